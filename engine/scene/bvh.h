@@ -1,0 +1,41 @@
+#pragma once
+// Embree's builder, flattened into tables for traversal in compute shaders (shaders/scene/intersect.glsl).
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/scene/scene.h"
+
+namespace scene {
+
+struct BvhStats {
+    uint64_t nodes = 0;
+    uint64_t triangleRecords = 0; // with duplicates of spatial splits
+    uint64_t bytes = 0;
+    double sahCost = 0;
+    double buildSeconds = 0;
+    uint32_t depth = 0; // largest number of stack entries that traversal can need
+};
+
+struct Bvh {
+    std::vector<glm::uvec4> nodes;     // table "Nodes"
+    std::vector<glm::uvec4> triangles; // table "Triangles"
+    BvhStats stats;
+};
+
+struct BvhInput {
+    std::span<const glm::vec3> positions;
+    std::span<const Triangle> triangles;
+    std::span<const uint8_t> needsAlphaTest; // per triangle, 0 or 1; empty: none does
+    std::function<void(double)> progress;    // fraction done in [0,1]; may be empty
+};
+
+// Degenerate and non-finite triangles are left out. No triangle at all gives a tree that nothing hits.
+// Throws Error when the tree cannot fit `maxTableBytes`.
+Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes);
+
+} // namespace scene
