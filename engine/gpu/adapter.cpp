@@ -16,6 +16,11 @@ namespace
 
 constexpr uint32_t ENOUGH_TEXELS = 1u << 24; // fewer: tables are storage buffers
 
+// Whatever the device offers, the program stays inside what WebGPU could.
+constexpr uint32_t PORTABLE_STORAGE_BUFFERS = 10; // per stage
+constexpr uint32_t PORTABLE_INVOCATIONS = 256;    // per workgroup
+constexpr uint32_t PORTABLE_SHARED_BYTES = 16384; // per workgroup
+
 const char* kindName(VkPhysicalDeviceType type)
 {
     switch (type) {
@@ -47,9 +52,9 @@ Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, u
         .storageBindingBytes = storage,
         .tableBytes = texel ? texels : storage,
         .uniformBindingBytes = limits.maxUniformBufferRange,
-        .storageBuffersPerStage = limits.maxPerStageDescriptorStorageBuffers,
-        .workgroupInvocations = limits.maxComputeWorkGroupInvocations,
-        .workgroupBytes = limits.maxComputeSharedMemorySize,
+        .storageBuffersPerStage = std::min(limits.maxPerStageDescriptorStorageBuffers, PORTABLE_STORAGE_BUFFERS),
+        .workgroupInvocations = std::min(limits.maxComputeWorkGroupInvocations, PORTABLE_INVOCATIONS),
+        .workgroupBytes = std::min(limits.maxComputeSharedMemorySize, PORTABLE_SHARED_BYTES),
         .memoryBytes = heap,
         .timestamps = timestampBits > 0,
         .tablesAreTexelBuffers = texel,

@@ -50,14 +50,18 @@ uint32_t memoryTypeFor(const DeviceState& device, Usage usage, uint32_t allowed)
     return memoryType(device, allowed, {LOCAL | HOST | CACHED, LOCAL, 0});
 }
 
+std::string advice(const BufferDescriptor& descriptor)
+{
+    return descriptor.setting.empty() ? "" : "; reduce " + descriptor.setting;
+}
+
 void checkSize(const DeviceState& device, const BufferDescriptor& descriptor)
 {
     const Limits& limits = device.physical.adapter.limits;
     const auto check = [&](Usage usage, uint64_t limit, const char* what) {
         if (!has(descriptor.usage, usage) || descriptor.size <= limit) return;
         throw Error("Buffer \"{}\" needs {} bytes, more than the {} that \"{}\" allows for {}{}.", descriptor.label,
-                    descriptor.size, limit, device.physical.adapter.name, what,
-                    descriptor.setting.empty() ? "" : "; reduce " + descriptor.setting);
+                    descriptor.size, limit, device.physical.adapter.name, what, advice(descriptor));
     };
     check(Usage::Storage, limits.storageBindingBytes, "a storage binding");
     check(Usage::Uniform, limits.uniformBindingBytes, "a uniform binding");
@@ -98,7 +102,15 @@ std::unique_ptr<BufferState> DeviceState::createBuffer(const BufferDescriptor& d
     const uint32_t type = memoryTypeFor(*this, descriptor.usage, needs.memoryTypeBits);
     const VkMemoryAllocateInfo allocation = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = type};
-    vkCheck(vkAllocateMemory(device, &allocation, nullptr, &state->memory), "vkAllocateMemory", descriptor.label);
+    VkResult result = vkAllocateMemory(device, &allocation, nullptr, &state->memory);
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY && !parked.empty()) { // let go of what is parked, then try again
+        wait(submit(nullptr));
+        result = vkAllocateMemory(device, &allocation, nullptr, &state->memory);
+    }
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        throw Error("Buffer \"{}\" of {} bytes does not fit into the memory of \"{}\", beside {} bytes in use{}.",
+                    descriptor.label, descriptor.size, physical.adapter.name, allocatedBytes, advice(descriptor));
+    vkCheck(result, "vkAllocateMemory", descriptor.label);
     state->allocated = needs.size;
     allocatedBytes += needs.size;
     name(VK_OBJECT_TYPE_DEVICE_MEMORY, state->memory, descriptor.label);
@@ -143,6 +155,7 @@ Buffer Device::createBuffer(const BufferDescriptor& descriptor)
 }
 
 Buffer::Buffer(std::unique_ptr<BufferState> state) : state_(std::move(state)) {}
+Buffer::Buffer() noexcept = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;
 Buffer::~Buffer() = default;

@@ -65,6 +65,9 @@ DeviceState::DeviceState(const DeviceDescriptor& wanted) : options(wanted), inst
     vkCheck(vkCreateSemaphore(device, &semaphore, nullptr, &timeline), "vkCreateSemaphore", "device");
     name(VK_OBJECT_TYPE_SEMAPHORE, timeline, "submissions");
     name(VK_OBJECT_TYPE_QUEUE, vkQueue, "queue");
+    name(VK_OBJECT_TYPE_COMMAND_POOL, commandPool, "commands");
+    name(VK_OBJECT_TYPE_DEVICE, device, physical.adapter.name);
+    loadPipelineCache();
 }
 
 DeviceState::~DeviceState()
@@ -74,6 +77,12 @@ DeviceState::~DeviceState()
     CHECK_EQ(liveObjects, 0u); // every buffer, pipeline and bind group must go before its device
     CHECK_EQ(openEncoders, 0u);
     vkDeviceWaitIdle(device); // of a lost device too
+    try {
+        savePipelineCache();
+    } catch (const Error&) {
+        // Only time is lost: the next run compiles again.
+    }
+    vkDestroyPipelineCache(device, pipelineCache, nullptr);
     for (Parked& object : parked) object.destroy();
     for (const Flight& flight : flights)
         for (VkQueryPool page : flight.timestamps.pages) vkDestroyQueryPool(device, page, nullptr);
@@ -123,6 +132,5 @@ uint64_t Device::allocatedBytes() const
 {
     return state_->allocatedBytes;
 }
-void Device::savePipelineCache() {}
 
 } // namespace gpu

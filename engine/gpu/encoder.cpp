@@ -44,7 +44,13 @@ std::vector<BufferUse<VkBuffer>> usesOf(const PipelineState& pipeline, const Dis
             checkFailed(__FILE__, __LINE__,
                         fmt::format("bind group \"{}\" does not fit set {} of pipeline \"{}\"", state.label,
                                     binding.set, pipeline.label));
-        uses.push_back({state.buffers.at(binding.binding), binding.reads, binding.writes});
+        const VkBuffer buffer = state.buffers.at(binding.binding);
+        for (const BufferUse<VkBuffer>& other : uses)
+            if (other.buffer == buffer && (other.writes || binding.writes))
+                checkFailed(__FILE__, __LINE__,
+                            fmt::format("dispatch of \"{}\" writes \"{}\" and binds the same buffer under another name",
+                                        pipeline.label, binding.name));
+        uses.push_back({buffer, binding.reads, binding.writes});
     }
     return uses;
 }
@@ -65,7 +71,9 @@ EncoderState::EncoderState(DeviceState& owner, const std::string& name)
 EncoderState::~EncoderState()
 {
     --device->openEncoders;
-    if (commands) device->recycle({commands}, std::move(timestamps.pages));
+    if (!commands) return;
+    vkResetCommandBuffer(commands, 0);
+    device->recycle({commands}, std::move(timestamps.pages));
 }
 
 void EncoderState::finish()
@@ -102,8 +110,9 @@ void EncoderState::dispatch(const Dispatch& dispatch)
         const uint32_t limit = device->properties.limits.maxComputeWorkGroupCount[axis];
         groups[axis] = uint32_t((uint64_t(threads[axis]) + size - 1) / size);
         if (groups[axis] > limit)
-            throw Error("Dispatch \"{}\" needs {} workgroups along {}, more than the device's {}.", name, groups[axis],
-                        "xyz"[axis], limit);
+            throw Error("Dispatch \"{}\" needs {} workgroups along {}, more than the {} of \"{}\"{}.", name,
+                        groups[axis], "xyz"[axis], limit, device -> physical.adapter.name,
+                        dispatch.setting.empty() ? "" : "; reduce " + dispatch.setting);
     }
     const auto uses = usesOf(pipeline, dispatch);
     if (groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;

@@ -87,7 +87,7 @@ struct BufferDescriptor {
 class Buffer
 {
   public:
-    Buffer() = default;
+    Buffer() noexcept;
     explicit Buffer(std::unique_ptr<BufferState> state);
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
@@ -127,7 +127,7 @@ struct Binding {
 class ComputePipeline
 {
   public:
-    ComputePipeline() = default;
+    ComputePipeline() noexcept;
     explicit ComputePipeline(std::unique_ptr<PipelineState> state);
     ComputePipeline(ComputePipeline&&) noexcept;
     ComputePipeline& operator=(ComputePipeline&&) noexcept;
@@ -154,7 +154,7 @@ struct BindGroupDescriptor {
 class BindGroup
 {
   public:
-    BindGroup() = default;
+    BindGroup() noexcept;
     explicit BindGroup(std::unique_ptr<BindGroupState> state);
     BindGroup(BindGroup&&) noexcept;
     BindGroup& operator=(BindGroup&&) noexcept;
@@ -171,11 +171,13 @@ struct Threads { // {1000} is 1000 x 1 x 1
     uint32_t z = 1;
 };
 
+// One run of a pipeline. A buffer that it writes is bound only once, as in WebGPU.
 struct Dispatch {
     const ComputePipeline* pipeline = nullptr;
     std::vector<const BindGroup*> groups; // by set number; null where the pipeline uses no such set
     Threads threads;                      // rounded up to workgroups; the shader guards the rest
     std::string label;                    // of the timing; empty: the pipeline's
+    std::string setting;                  // what to reduce when there are too many workgroups, for the error: "--size"
 };
 
 // Records work. Barriers are automatic: before a dispatch that touches what an earlier one wrote (or writes what one
@@ -236,7 +238,8 @@ class Queue
     };
     Readback readLater(const Buffer& buffer);
     std::vector<std::byte> take(const Readback& readback); // waits if need be
-    std::vector<Timing> takeTimings();                     // of all submissions finished since the last call, in order
+    std::vector<Timing>
+    takeTimings(); // of submissions finished since the last call (the last few thousand at most), in order
 
   private:
     DeviceState* device_;

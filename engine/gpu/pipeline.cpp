@@ -17,21 +17,35 @@ namespace gpu
 namespace
 {
 
-// The constants that the shader has, by SPIR-V's number; the others are ignored.
-std::map<uint32_t, uint32_t> valuesById(const Reflection& reflection, std::span<const Constant> constants)
+void checkLimits(const DeviceState& device, const Reflection& shader, const std::string& label)
 {
-    std::map<uint32_t, uint32_t> values;
-    for (const SpecializationConstant& declared : reflection.constants) {
-        values.try_emplace(declared.id, declared.defaultValue);
-        for (const Constant& given : constants)
-            if (given.name == declared.name) values[declared.id] = given.value;
-    }
-    return values;
-}
+    const Limits& limits = device.physical.adapter.limits;
+    const std::string& deviceName = device.physical.adapter.name;
 
-uint32_t valueOf(const Extent& extent, const std::map<uint32_t, uint32_t>& values)
-{
-    return extent.constantId ? values.at(*extent.constantId) : extent.literal;
+    // Tables count, whatever they are here: elsewhere they are storage buffers.
+    const auto storage =
+        std::ranges::count_if(shader.bindings, [](const Binding& b) { return b.kind != Binding::Kind::Uniform; });
+    if (storage > limits.storageBuffersPerStage)
+        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the limit of {}.", label, storage,
+                    limits.storageBuffersPerStage);
+
+    uint64_t invocations = 1;
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        const uint32_t size = shader.workgroupSize[axis];
+        const std::string& constant = shader.workgroupSizeConstants[axis];
+        const std::string advice = constant.empty() ? "" : fmt::format("; reduce the constant {}", constant);
+        const uint32_t limit =
+            std::min(device.properties.limits.maxComputeWorkGroupSize[axis], limits.workgroupInvocations);
+        invocations *= size;
+        if (size == 0 || size > limit || invocations > limits.workgroupInvocations)
+            throw Error("Shader \"{}\" has workgroups of {} x {} x {}, more than the {} invocations ({} along {}) of "
+                        "\"{}\"{}.",
+                        label, shader.workgroupSize[0], shader.workgroupSize[1], shader.workgroupSize[2],
+                        limits.workgroupInvocations, limit, "xyz"[axis], deviceName, advice);
+    }
+    if (shader.sharedBytes > limits.workgroupBytes)
+        throw Error("Shader \"{}\" needs {} bytes of shared memory, more than the {} of \"{}\".", label,
+                    shader.sharedBytes, limits.workgroupBytes, deviceName);
 }
 
 VkShaderModule createModule(const DeviceState& device, std::span<const uint32_t> spirv, const std::string& label)
@@ -131,6 +145,15 @@ void checkNames(const BindGroupDescriptor& descriptor, std::span<const Binding> 
 
 } // namespace
 
+std::vector<uint32_t> DeviceState::loadShader(const std::string& shader) const
+{
+    const bool texel = physical.adapter.limits.tablesAreTexelBuffers;
+    const bool isFile = shader.find('/') != std::string::npos;
+    if (options.shaderDirectory.empty() || isFile) return gpu::loadShader(shader, texel);
+    const std::filesystem::path directory = options.shaderDirectory;
+    return compileShader(directory / (shader + ".comp"), directory, texel);
+}
+
 VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
 {
     if (kind == Binding::Kind::Uniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -153,6 +176,7 @@ VkDescriptorSetLayout DeviceState::setLayout(const std::map<uint32_t, VkDescript
                                                   .bindingCount = uint32_t(list.size()),
                                                   .pBindings = list.data()};
     vkCheck(vkCreateDescriptorSetLayout(device, &info, nullptr, &layout), "vkCreateDescriptorSetLayout", "set layout");
+    name(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, fmt::format("layout of {} bindings", bindings.size()));
     return layout;
 }
 
@@ -161,17 +185,16 @@ ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& d
     return whileDoing(fmt::format("creating pipeline \"{}\"", descriptor.label), [&] {
         const bool texel = limits().tablesAreTexelBuffers;
         const std::string& shader = descriptor.shader.empty() ? descriptor.label : descriptor.shader;
-        const std::vector<uint32_t> spirv = loadShader(shader, texel);
-        Reflection reflection = reflect(spirv, shader, texel);
-        const std::map<uint32_t, uint32_t> values = valuesById(reflection, descriptor.constants);
+        const std::vector<uint32_t> spirv = state_->loadShader(shader);
+        Reflection reflection = reflect(spirv, shader, texel, descriptor.constants);
+        checkLimits(*state_, reflection, shader);
 
         auto pipeline = std::make_unique<PipelineState>(*state_);
         pipeline->label = descriptor.label;
         pipeline->bindings = std::move(reflection.bindings);
-        for (uint32_t axis = 0; axis < 3; ++axis)
-            pipeline->workgroupSize[axis] = valueOf(reflection.workgroupSize[axis], values);
+        pipeline->workgroupSize = reflection.workgroupSize;
         createLayout(*pipeline);
-        compile(*pipeline, spirv, values);
+        compile(*pipeline, spirv, reflection.constants);
         return ComputePipeline(std::move(pipeline));
     });
 }
@@ -254,6 +277,7 @@ BindGroupState::~BindGroupState()
 }
 
 ComputePipeline::ComputePipeline(std::unique_ptr<PipelineState> state) : state_(std::move(state)) {}
+ComputePipeline::ComputePipeline() noexcept = default;
 ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
 ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
 ComputePipeline::~ComputePipeline() = default;
@@ -275,6 +299,7 @@ double ComputePipeline::compileSeconds() const
 }
 
 BindGroup::BindGroup(std::unique_ptr<BindGroupState> state) : state_(std::move(state)) {}
+BindGroup::BindGroup() noexcept = default;
 BindGroup::BindGroup(BindGroup&&) noexcept = default;
 BindGroup& BindGroup::operator=(BindGroup&&) noexcept = default;
 BindGroup::~BindGroup() = default;

@@ -10,6 +10,13 @@
 namespace gpu
 {
 
+namespace
+{
+
+constexpr size_t MAX_TIMINGS = 1 << 16; // a program that never takes its timings must not fill the memory with them
+
+} // namespace
+
 std::optional<uint64_t> StagingRing::allocate(uint64_t bytes)
 {
     CHECK_LE(bytes, BYTES);
@@ -99,6 +106,7 @@ void DeviceState::retire()
 
 void DeviceState::collect(const Flight& flight)
 {
+    if (timings.size() > MAX_TIMINGS) timings.erase(timings.begin(), timings.begin() + MAX_TIMINGS / 2);
     const std::vector<std::string>& labels = flight.timestamps.labels;
     const uint32_t bits = physical.timestampBits;
     const uint64_t mask = bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
@@ -151,6 +159,7 @@ VkQueryPool DeviceState::takeQueryPage()
                                         .queryCount = 2 * Timestamps::DISPATCHES_PER_PAGE};
     VkQueryPool page = VK_NULL_HANDLE;
     vkCheck(vkCreateQueryPool(device, &info, nullptr, &page), "vkCreateQueryPool", "timestamps");
+    name(VK_OBJECT_TYPE_QUERY_POOL, page, "timestamps");
     return page;
 }
 

@@ -3,9 +3,11 @@
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"
 
+#include <spirv-tools/optimizer.hpp>
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace gpu
 {
@@ -20,7 +22,7 @@ using Context = std::unique_ptr<spvc_context_s, DestroyContext>;
 
 // One shader being looked at. Calls of SPIRV-Cross that can fail go through check().
 struct Inspector {
-    const std::string& label;
+    std::string label;
     Context context;
     spvc_compiler compiler = nullptr;
 
@@ -89,42 +91,70 @@ struct Inspector {
         return found;
     }
 
-    Extent extent(uint32_t literal, spvc_constant_id id) const
-    {
-        if (id == 0) return {literal, std::nullopt};
-        const spvc_constant constant = spvc_compiler_get_constant_handle(compiler, id);
-        Extent result = {spvc_constant_get_scalar_u32(constant, 0, 0), std::nullopt};
-        if (spvc_compiler_has_decoration(compiler, id, SpvDecorationSpecId))
-            result.constantId = spvc_compiler_get_decoration(compiler, id, SpvDecorationSpecId);
-        return result;
-    }
-
-    void constants(Reflection& result) const
+    // The constants' values by number, and the names of those that set the workgroup's size.
+    void readConstants(std::span<const Constant> given, Reflection& result) const
     {
         spvc_specialization_constant sizes[3] = {};
         spvc_compiler_get_work_group_size_specialization_constants(compiler, &sizes[0], &sizes[1], &sizes[2]);
-        for (uint32_t axis = 0; axis < 3; ++axis) {
-            const uint32_t literal =
-                spvc_compiler_get_execution_mode_argument_by_index(compiler, SpvExecutionModeLocalSize, axis);
-            result.workgroupSize[axis] = extent(literal, sizes[axis].id);
-        }
-
         const spvc_specialization_constant* list = nullptr;
         size_t count = 0;
         check(spvc_compiler_get_specialization_constants(compiler, &list, &count));
         for (const auto& constant : std::span(list, count)) {
             std::string name = spvc_compiler_get_name(compiler, constant.id);
             for (uint32_t axis = 0; axis < 3; ++axis)
-                if (name.empty() && constant.id == sizes[axis].id) name = std::string("local_size_") + "xyz"[axis];
+                if (name.empty() && sizes[axis].id == constant.id) name = std::string("local_size_") + "xyz"[axis];
             const spvc_constant value = spvc_compiler_get_constant_handle(compiler, constant.id);
-            result.constants.push_back({name, constant.constant_id, spvc_constant_get_scalar_u32(value, 0, 0)});
+            // A number may be declared twice, as a name and as local_size_x_id: the first default counts for both.
+            result.constants.try_emplace(constant.constant_id, spvc_constant_get_scalar_u32(value, 0, 0));
+            for (uint32_t axis = 0; axis < 3; ++axis) {
+                std::string& sizeName = result.workgroupSizeConstants[axis];
+                const bool sets = sizes[axis].id != 0 && sizes[axis].constant_id == constant.constant_id;
+                if (sets && (sizeName.empty() || sizeName.starts_with("local_size_"))) sizeName = name;
+            }
+            for (const Constant& wanted : given)
+                if (wanted.name == name) result.constants[constant.constant_id] = wanted.value;
         }
+    }
+
+    void readWorkgroupSize(Reflection& result) const
+    {
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            result.workgroupSize[axis] =
+                spvc_compiler_get_execution_mode_argument_by_index(compiler, SpvExecutionModeLocalSize, axis);
+    }
+
+    // Without padding: a lower bound that is exact for arrays of scalars, vec2 and vec4.
+    uint64_t bytesOf(spvc_type type) const
+    {
+        uint64_t elements = 1;
+        for (unsigned i = 0; i < spvc_type_get_num_array_dimensions(type); ++i)
+            elements *= spvc_type_get_array_dimension(type, i);
+        if (spvc_type_get_basetype(type) != SPVC_BASETYPE_STRUCT)
+            return elements * spvc_type_get_vector_size(type) * spvc_type_get_columns(type) *
+                   std::max(32u, spvc_type_get_bit_width(type)) / 8;
+        uint64_t bytes = 0;
+        for (unsigned i = 0; i < spvc_type_get_num_member_types(type); ++i)
+            bytes += bytesOf(spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(type, i)));
+        return elements * bytes;
+    }
+
+    // SPIRV-Cross does not list shared variables: look for OpVariable <type> <id> Workgroup among the instructions.
+    uint64_t sharedBytes(std::span<const uint32_t> spirv) const
+    {
+        constexpr size_t HEADER_WORDS = 5;
+        uint64_t bytes = 0;
+        for (size_t at = HEADER_WORDS; at < spirv.size();) {
+            const uint32_t opcode = spirv[at] & SpvOpCodeMask;
+            const uint32_t words = spirv[at] >> SpvWordCountShift;
+            if (opcode == SpvOpVariable && spirv[at + 3] == SpvStorageClassWorkgroup)
+                bytes += bytesOf(spvc_compiler_get_type_handle(compiler, spirv[at + 1]));
+            at += words;
+        }
+        return bytes;
     }
 };
 
-} // namespace
-
-Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers)
+Inspector inspect(std::span<const uint32_t> spirv, const std::string& label)
 {
     spvc_context context = nullptr;
     Inspector inspector = {.label = label};
@@ -134,10 +164,40 @@ Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bo
     inspector.check(spvc_context_parse_spirv(context, spirv.data(), spirv.size(), &ir));
     inspector.check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
                                                  &inspector.compiler));
+    return inspector;
+}
 
+// The same shader with its constants set for good, so that all sizes in it are plain numbers.
+std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string& label,
+                             const std::map<uint32_t, uint32_t>& constants)
+{
+    std::unordered_map<uint32_t, std::vector<uint32_t>> values;
+    for (const auto& [id, value] : constants) values[id] = {value};
+    std::string problem;
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    optimizer.SetMessageConsumer(
+        [&](spv_message_level_t, const char*, const spv_position_t&, const char* message) { problem = message; });
+    optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
+        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+    std::vector<uint32_t> frozen;
+    if (!optimizer.Run(spirv.data(), spirv.size(), &frozen))
+        throw Error("Shader \"{}\" is not valid SPIR-V: {}.", label, problem);
+    return frozen;
+}
+
+} // namespace
+
+Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers,
+                   std::span<const Constant> constants)
+{
     Reflection result;
+    inspect(spirv, label).readConstants(constants, result);
+    const std::vector<uint32_t> frozen = freeze(spirv, label, result.constants);
+    const Inspector inspector = inspect(frozen, label);
     result.bindings = inspector.bindings(tablesAreTexelBuffers);
-    inspector.constants(result);
+    inspector.readWorkgroupSize(result);
+    result.sharedBytes = inspector.sharedBytes(frozen);
     return result;
 }
 

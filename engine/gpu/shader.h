@@ -3,39 +3,33 @@
 
 #include "engine/gpu/gpu.h"
 
+#include <filesystem>
+#include <map>
+
 namespace gpu
 {
 
-struct SpecializationConstant {
-    std::string name; // those of an unnamed local size: "local_size_x", ...
-    uint32_t id = 0;  // layout(constant_id = ...)
-    uint32_t defaultValue = 0;
-};
-
-// A number in a shader that a specialisation constant may set.
-struct Extent {
-    uint32_t literal = 1;
-    std::optional<uint32_t> constantId;
-};
-
-// An array, matrix or vector in shared memory.
-struct SharedVariable {
-    uint64_t elementBytes = 0;
-    std::vector<Extent> dimensions;
-};
-
+// A compute shader with its specialisation constants set.
 struct Reflection {
-    std::vector<Binding> bindings; // sorted by (set, binding)
-    std::vector<SpecializationConstant> constants;
-    std::array<Extent, 3> workgroupSize;
-    std::vector<SharedVariable> shared;
+    std::vector<Binding> bindings;                          // sorted by (set, binding)
+    std::map<uint32_t, uint32_t> constants;                 // value by constant_id
+    std::array<uint32_t, 3> workgroupSize = {1, 1, 1};      // invocations
+    std::array<std::string, 3> workgroupSizeConstants = {}; // the names of the constants that set it, if any do
+    uint64_t sharedBytes = 0;
 };
 
+// Constants that the shader lacks are ignored; an unnamed local_size_x_id is called "local_size_x".
 // `tablesAreTexelBuffers` says how to recognize a table. Throws Error when it is not a compute shader we understand.
-Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers);
+Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers,
+                   std::span<const Constant> constants);
 
 // The embedded shader `name`, or the file `name`.<flavor>.spv if that contains a slash. Throws Error when there is
 // none.
 std::vector<uint32_t> loadShader(const std::string& name, bool tablesAreTexelBuffers);
+
+// Compiles a .comp file as the build does: the same includes (`directory`, `directory`/path), macros and target.
+// Throws Error with the compiler's message.
+std::vector<uint32_t> compileShader(const std::filesystem::path& source, const std::filesystem::path& directory,
+                                    bool tablesAreTexelBuffers);
 
 } // namespace gpu

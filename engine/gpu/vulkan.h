@@ -7,6 +7,7 @@
 #include <vulkan/vulkan.h>
 
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <mutex>
 
@@ -162,12 +163,16 @@ struct DeviceState {
     EncoderState& writes(); // the encoder of pending writes
 
     std::unique_ptr<BufferState> createBuffer(const BufferDescriptor& descriptor);
+    std::vector<uint32_t> loadShader(const std::string& shader) const; // compiled here and now for hot reload
     VkDescriptorSetLayout setLayout(const std::map<uint32_t, VkDescriptorType>& bindings);
     VkDescriptorType descriptorType(Binding::Kind kind) const;
     VkCommandBuffer takeCommandBuffer();
     VkQueryPool takeQueryPage();
     void recycle(std::vector<VkCommandBuffer> commands, std::vector<VkQueryPool> pages);
     void name(VkObjectType type, uint64_t handle, const std::string& label) const;
+    std::filesystem::path cachePath() const;
+    void loadPipelineCache();
+    void savePipelineCache();
     template <class Handle>
     void name(VkObjectType type, Handle handle, const std::string& label) const
     {
@@ -182,8 +187,9 @@ struct DeviceState {
     VkDevice device = VK_NULL_HANDLE;
     VkQueue vkQueue = VK_NULL_HANDLE;
     VkCommandPool commandPool = VK_NULL_HANDLE;
-    VkSemaphore timeline = VK_NULL_HANDLE; // its value is the last finished submission
-    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+    VkSemaphore timeline = VK_NULL_HANDLE;          // its value is the last finished submission
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE; // null without a cache folder
+    std::vector<std::byte> savedCache;              // the blob that the file holds
     Queue queue{*this};
 
     Submission submitted = 0;

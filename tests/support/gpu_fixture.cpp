@@ -1,11 +1,42 @@
 #include "tests/support/gpu_fixture.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <set>
 
 namespace
 {
+
+// Software drivers that tests know how to find. Pinned, so that the loader need not try the drivers of absent GPUs.
+struct KnownDriver {
+    std::string device; // part of its device's name
+    const char* manifest;
+    const char* package;
+};
+const KnownDriver DRIVERS[] = {
+    {"llvmpipe", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json", "mesa-vulkan-drivers"},
+    {"SwiftShader", "/usr/lib/chromium/vk_swiftshader_icd.json", "chromium"},
+};
+
+std::string wantedDevice()
+{
+    const char* wanted = std::getenv("TRICHROME_TEST_DEVICE");
+    return wanted ? wanted : DRIVERS[0].device;
+}
+
+// Why the wanted device's driver cannot be used; empty when it can be tried.
+std::string pinDriver()
+{
+    for (const KnownDriver& driver : DRIVERS) {
+        if (driver.device != wantedDevice() || std::getenv("VK_ICD_FILENAMES")) continue;
+        if (!std::filesystem::exists(driver.manifest))
+            return "SKIPPED, NOT TESTED ON " + driver.device + ": no " + driver.manifest + " (Debian package " +
+                   driver.package + ")";
+        setenv("VK_ICD_FILENAMES", driver.manifest, 0);
+    }
+    return "";
+}
 
 // Device and pipelines of this executable, closed before main returns: drivers dislike closing later.
 struct Shared {
@@ -27,12 +58,16 @@ class CloseAtTheEnd : public testing::Environment
 
 } // namespace
 
+gpu::Device GpuTest::openDevice(gpu::DeviceDescriptor descriptor)
+{
+    descriptor.adapter = wantedDevice();
+    descriptor.validation = true;
+    return gpu::Device::create(descriptor);
+}
+
 gpu::Device& GpuTest::device()
 {
-    if (!shared.device) {
-        const char* wanted = std::getenv("TRICHROME_TEST_DEVICE");
-        shared.device = gpu::Device::create({.adapter = wanted ? wanted : "llvmpipe", .validation = true});
-    }
+    if (!shared.device) shared.device = openDevice({});
     return *shared.device;
 }
 
@@ -82,10 +117,13 @@ void GpuTest::run(const Run& run)
 
 void GpuTest::SetUp()
 {
-    device().takeValidationMessages();
+    const std::string reason = pinDriver();
+    if (!reason.empty()) GTEST_SKIP() << reason;
+    if (shared.device) shared.device->takeValidationMessages();
 }
 
 void GpuTest::TearDown()
 {
-    for (const std::string& message : device().takeValidationMessages()) ADD_FAILURE() << message;
+    if (!shared.device) return;
+    for (const std::string& message : shared.device->takeValidationMessages()) ADD_FAILURE() << message;
 }

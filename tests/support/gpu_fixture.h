@@ -29,6 +29,9 @@ class GpuTest : public testing::Test
 
     static gpu::Device& device();
 
+    // Another device of the same driver, for tests of devices; whoever opens one looks at its messages.
+    static gpu::Device openDevice(gpu::DeviceDescriptor descriptor);
+
     // Compiles (once per shader and constants), binds, dispatches, submits and waits.
     void run(const Run& run);
 
@@ -51,7 +54,7 @@ class GpuTest : public testing::Test
         return device().queue().readAs<T>(buffer);
     }
 
-    void SetUp() override;    // forgets messages of earlier tests
+    void SetUp() override;    // skips when the driver is not installed
     void TearDown() override; // fails on any validation message
 
   private:

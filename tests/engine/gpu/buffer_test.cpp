@@ -1,0 +1,63 @@
+#include "engine/base/error.h"
+#include "tests/support/gpu_fixture.h"
+
+namespace
+{
+
+class Buffer : public GpuTest
+{
+};
+
+TEST_F(Buffer, StartsAsZeros)
+{
+    for (int i = 0; i < 3; ++i) { // later ones may get memory that was used
+        gpu::Buffer buffer = create<uint32_t>("zeros", 1000);
+        EXPECT_EQ(download<uint32_t>(buffer), std::vector<uint32_t>(1000, 0));
+        device().queue().write(buffer, std::vector<std::byte>(4000, std::byte{0xff}));
+    }
+}
+
+TEST_F(Buffer, CountsItsMemoryUntilItGoes)
+{
+    const uint64_t before = device().allocatedBytes();
+    {
+        const gpu::Buffer buffer = create<uint32_t>("counted", 1 << 18);
+        EXPECT_GE(device().allocatedBytes(), before + (1 << 20));
+        EXPECT_EQ(buffer.size(), 1u << 20);
+        EXPECT_EQ(buffer.label(), "counted");
+    }
+    EXPECT_EQ(device().allocatedBytes(), before);
+}
+
+TEST_F(Buffer, TooLargeForItsUsageIsAnErrorThatNamesTheSetting)
+{
+    const gpu::Limits& limits = device().limits();
+    const auto errorFor = [&](gpu::Usage usage, uint64_t size) -> std::string {
+        try {
+            device().createBuffer({.label = "reservoirs", .size = size, .usage = usage, .setting = "--size"});
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    for (const auto& [usage, limit] : {std::pair(gpu::Usage::Storage, limits.storageBindingBytes),
+                                       std::pair(gpu::Usage::Uniform, limits.uniformBindingBytes),
+                                       std::pair(gpu::Usage::Table, limits.tableBytes)}) {
+        const std::string message = errorFor(usage, limit + 1);
+        EXPECT_NE(message.find("\"reservoirs\" needs " + std::to_string(limit + 1)), std::string::npos) << message;
+        EXPECT_NE(message.find("reduce --size"), std::string::npos) << message;
+    }
+    EXPECT_NE(errorFor(gpu::Usage::Readback, uint64_t{1} << 50).find("reduce --size"), std::string::npos);
+}
+
+TEST_F(Buffer, OfOddSizeKeepsItsLastBytes)
+{
+    std::vector<uint8_t> bytes(37);
+    for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = uint8_t(i + 1);
+    for (const gpu::Usage usage : {gpu::Usage::Storage, gpu::Usage::Uniform, gpu::Usage::Table, gpu::Usage::Readback}) {
+        const gpu::Buffer buffer = upload("odd", bytes, usage);
+        EXPECT_EQ(download<uint8_t>(buffer), bytes);
+    }
+}
+
+} // namespace
