@@ -99,7 +99,7 @@ void Renderer::createStages()
 
 void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
 {
-    const std::array<uint32_t, 3> pixels = {settings_.width, settings_.height, 1};
+    const gpu::Threads pixels = {settings_.width, settings_.height};
     primary_->encode(encoder, pixels);
     pathTrace_->encode(encoder, pixels);
     accumulate_->encode(encoder, pixels);

@@ -14,7 +14,7 @@ Stage::Stage(const StageContext& context, const std::string& name, const NamedBu
 {
 }
 
-void Stage::encode(gpu::CommandEncoder& encoder, std::array<uint32_t, 3> threads) const
+void Stage::encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const
 {
     encoder.dispatch({.pipeline = &pipeline_, .groups = {&frameGroup_, &sceneGroup_, &ownGroup_}, .threads = threads});
 }

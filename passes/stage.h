@@ -29,7 +29,7 @@ class Stage
     // `name` is the shader's, and the label of its timings; `buffers` are set 2, exactly as the shader names them.
     Stage(const StageContext& context, const std::string& name, const NamedBuffers& buffers);
 
-    void encode(gpu::CommandEncoder& encoder, std::array<uint32_t, 3> threads) const;
+    void encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const;
 
   private:
     gpu::ComputePipeline pipeline_;
