@@ -238,8 +238,8 @@ class Queue
     };
     Readback readLater(const Buffer& buffer);
     std::vector<std::byte> take(const Readback& readback); // waits if need be
-    std::vector<Timing>
-    takeTimings(); // of submissions finished since the last call (the last few thousand at most), in order
+    // Of submissions finished since the last call, in order. Only the latest few ten thousand are kept.
+    std::vector<Timing> takeTimings();
 
   private:
     DeviceState* device_;
