@@ -1,10 +1,17 @@
 #pragma once
-// Every knob of the renderer, once. Command line, JSON presets, the panel, image metadata and the settings hash all visit them.
+// Every knob of the renderer, once. Command line, JSON presets, the panel, image metadata and the settings hash all
+// visit the same list. Adding a setting: one field, one line in visitSettings.
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-namespace passes {
+#include <nlohmann/json_fwd.hpp>
+
+namespace passes
+{
 
 enum class Method : uint32_t { Pt, RestirPt, RgbRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
@@ -15,14 +22,93 @@ struct Settings {
     Shift shift = Shift::Hybrid;
     uint32_t maxConfidence = 20; // M_c
     bool temporal = true;
-    uint32_t spatial = 3; // K
+    uint32_t spatial = 3;     // K
     float spatialRadius = 20; // pixels
     uint32_t maxBounces = 5;  // scattering events
     PixelFilter pixelFilter = PixelFilter::Center;
     uint32_t width = 640;
     uint32_t height = 360;
+    std::string camera; // name or index; empty: the first
     uint64_t seed = 0;
+    uint32_t frames = 64;
+    double seconds = 0; // above 0: stop by time instead of by frames
     bool average = true;
+    std::string environment;    // file; empty: the scene's own
+    float environmentScale = 1; // multiplies the environment's radiance
+
+    bool operator==(const Settings&) const = default;
 };
+
+// What a person needs to know about a knob. The range is closed; choices, texts and sizes ignore it.
+struct Knob {
+    const char* name; // of the option, the preset's key, the metadata
+    double low = 0;
+    double high = 0;
+    const char* unit; // "" when a number has none
+    const char* doc;  // what it does; cost; whether it biases the image
+};
+
+// The size is one knob over two fields.
+template <class Integer>
+struct SizeField {
+    Integer& width;
+    Integer& height;
+};
+template <class Integer>
+SizeField(Integer&, Integer&) -> SizeField<Integer>;
+
+constexpr uint32_t MAX_SIZE = 32768;      // pixels, each side
+constexpr uint64_t MAX_PIXELS = 1u << 28; // as image::read
+
+// Calls visit(Knob, field&) for every setting, in the order in which people see them. `s` is Settings or const
+// Settings.
+template <class AnySettings, class Visitor>
+void visitSettings(AnySettings& s, Visitor&& visit)
+{
+    // clang-format off
+    visit(Knob{"method", 0, 0, "", "How light is computed. pt: plain path tracing; restir-pt: ReSTIR PT, one reservoir, luminance target; rgb-restir: one reservoir per channel. All unbiased."}, s.method);
+    visit(Knob{"shift", 0, 0, "", "ReSTIR's shift map: how a path moves to another pixel. Unbiased; replay costs the most rays."}, s.shift);
+    visit(Knob{"max-confidence", 1, 1048576, "frames", "M_c of ReSTIR: the most that history may count against a new frame. Larger: less noise, more correlation between frames. Unbiased, free."}, s.maxConfidence);
+    visit(Knob{"temporal", 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
+    visit(Knob{"spatial", 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
+    visit(Knob{"spatial-radius", 1, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be. Unbiased, free."}, s.spatialRadius);
+    visit(Knob{"max-bounces", 0, 64, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
+    visit(Knob{"pixel-filter", 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
+    visit(Knob{"size", 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});
+    visit(Knob{"camera", 0, 0, "", "Name or index of one of the scene's cameras; empty: the first."}, s.camera);
+    visit(Knob{"seed", 0, 18446744073709551615.0, "", "Of all random numbers: equal settings, seed and device give equal pixels. Unbiased, free."}, s.seed);
+    visit(Knob{"frames", 1, 1073741824, "frames", "How many frames to render, each one sample per pixel. Cost grows with it. Unbiased."}, s.frames);
+    visit(Knob{"seconds", 0, 1e7, "s", "Stop after this time of rendering instead of after a number of frames; 0: by frames. Unbiased."}, s.seconds);
+    visit(Knob{"average", 0, 0, "", "on: write the mean of all frames; off: write the last frame. Both unbiased; free."}, s.average);
+    visit(Knob{"environment", 0, 0, "", "Equirectangular picture (.exr or .hdr) that surrounds the scene; empty: the scene's own."}, s.environment);
+    visit(Knob{"environment-scale", 0, 1e6, "", "Multiplies the radiance of the environment. Changes the scene, not the estimate; free."}, s.environmentScale);
+    // clang-format on
+}
+
+// One knob as text, for --help and messages.
+struct KnobText {
+    std::string name;
+    std::string values;  // "pt|restir-pt|rgb-restir", "1 to 1048576 frames", "on|off", "WxH, ...", "text"
+    std::string initial; // the default
+    std::string doc;
+};
+std::vector<KnobText> describeSettings();
+
+// Sets one knob from text as on the command line. Throws Error: unknown name, wrong type, out of range.
+void set(Settings& settings, std::string_view name, std::string_view text);
+
+// Name and value of every knob, in order; set() reads each value back exactly.
+std::vector<std::pair<std::string, std::string>> toText(const Settings& settings);
+
+// An object with the knobs' names: numbers, true or false, texts. apply() takes any subset of them and throws Error
+// naming the key: unknown, wrong type, out of range.
+nlohmann::ordered_json toJson(const Settings& settings);
+void apply(Settings& settings, const nlohmann::ordered_json& preset);
+
+// 16 hexadecimal digits; equal exactly when (up to collision) all settings are.
+std::string hash(const Settings& settings);
+
+// The one place that knows what is not built yet. Throws Error naming the option.
+void requireImplemented(const Settings& settings);
 
 } // namespace passes

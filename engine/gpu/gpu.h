@@ -1,8 +1,9 @@
 #pragma once
-// The GPU layer: WebGPU's vocabulary over Vulkan 1.2 compute. No images, layouts, descriptor pools or barriers show here.
-// Objects are move-only values; a Buffer destroyed while in flight is parked until its submission retires.
-// Every object carries a label: it names the Vulkan object, its timings, and the nouns of error messages.
+// The GPU layer: WebGPU's vocabulary over Vulkan 1.2 compute. No images, layouts, descriptor pools or barriers show
+// here. Objects are move-only values; a Buffer destroyed while in flight is parked until its submission retires. Every
+// object carries a label: it names the Vulkan object, its timings, and the nouns of error messages.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-namespace gpu {
+namespace gpu
+{
 
 struct DeviceState; // everything Vulkan lives behind these (engine/gpu/vulkan.h)
 struct BufferState;
@@ -51,20 +53,29 @@ struct Adapter {
 std::vector<Adapter> enumerateAdapters();
 
 struct DeviceDescriptor {
-    std::string adapter;         // index, or part of a name, case-insensitive; empty: discrete before integrated before cpu
-    bool validation = false;     // validation layer with synchronization validation; throws Error when not installed
-    std::string shaderDirectory; // if set: read and compile GLSL from here at run time (hot reload) instead of embedded SPIR-V
-    std::string cacheDirectory;  // pipeline cache; empty: none
+    std::string adapter;     // index, or part of a name, case-insensitive; empty: discrete before integrated before cpu
+    bool validation = false; // validation layer with synchronization validation; throws Error when not installed
+    std::string
+        shaderDirectory; // if set: read and compile GLSL from here at run time (hot reload) instead of embedded SPIR-V
+    std::string cacheDirectory; // pipeline cache; empty: none
+    bool forceStaging = false;  // copy to and from the device even where the host sees its memory (tests)
 };
 
 enum class Usage : uint32_t {
-    Storage = 1,  // shader reads and writes
-    Uniform = 2,  // shader reads, uniform block
-    Table = 4,    // shader reads uvec4 elements: TABLE() and FETCH() of shaders/lib/table.glsl. Texel buffer or storage buffer
+    Storage = 1, // shader reads and writes
+    Uniform = 2, // shader reads, uniform block
+    Table =
+        4, // shader reads uvec4 elements: TABLE() and FETCH() of shaders/lib/table.glsl. Texel buffer or storage buffer
     Readback = 8, // host reads; copy target
 };
-constexpr Usage operator|(Usage a, Usage b) { return Usage(uint32_t(a) | uint32_t(b)); }
-constexpr bool has(Usage set, Usage one) { return (uint32_t(set) & uint32_t(one)) != 0; }
+constexpr Usage operator|(Usage a, Usage b)
+{
+    return Usage(uint32_t(a) | uint32_t(b));
+}
+constexpr bool has(Usage set, Usage one)
+{
+    return (uint32_t(set) & uint32_t(one)) != 0;
+}
 
 struct BufferDescriptor {
     std::string label;
@@ -122,9 +133,9 @@ class ComputePipeline
     ComputePipeline& operator=(ComputePipeline&&) noexcept;
     ~ComputePipeline();
     const std::string& label() const;
-    std::span<const Binding> bindings() const;       // of all sets, sorted by (set, binding)
-    std::array<uint32_t, 3> workgroupSize() const;   // invocations
-    double compileSeconds() const;                   // of pipeline creation, seconds
+    std::span<const Binding> bindings() const;     // of all sets, sorted by (set, binding)
+    std::array<uint32_t, 3> workgroupSize() const; // invocations
+    double compileSeconds() const;                 // of pipeline creation, seconds
     PipelineState* state() const { return state_.get(); }
 
   private:
@@ -133,9 +144,11 @@ class ComputePipeline
 
 struct BindGroupDescriptor {
     std::string label;
-    const ComputePipeline* pipeline = nullptr; // whose layout to use; usable with every pipeline whose set declares the same
+    const ComputePipeline* pipeline =
+        nullptr; // whose layout to use; usable with every pipeline whose set declares the same
     uint32_t set = 0;
-    std::vector<std::pair<std::string, const Buffer*>> buffers; // exactly the names that the shader declares in that set
+    std::vector<std::pair<std::string, const Buffer*>>
+        buffers; // exactly the names that the shader declares in that set
 };
 
 class BindGroup
@@ -152,14 +165,21 @@ class BindGroup
     std::unique_ptr<BindGroupState> state_;
 };
 
-struct Dispatch {
-    const ComputePipeline* pipeline = nullptr;
-    std::vector<const BindGroup*> groups;        // by set number; null where the pipeline uses no such set
-    std::array<uint32_t, 3> threads = {1, 1, 1}; // rounded up to workgroups; the shader guards the rest
-    std::string label;                           // of the timing; empty: the pipeline's
+struct Threads { // {1000} is 1000 x 1 x 1
+    uint32_t x = 1;
+    uint32_t y = 1;
+    uint32_t z = 1;
 };
 
-// Records work. Barriers are automatic: before a dispatch that touches what an earlier one wrote (or writes what one read).
+struct Dispatch {
+    const ComputePipeline* pipeline = nullptr;
+    std::vector<const BindGroup*> groups; // by set number; null where the pipeline uses no such set
+    Threads threads;                      // rounded up to workgroups; the shader guards the rest
+    std::string label;                    // of the timing; empty: the pipeline's
+};
+
+// Records work. Barriers are automatic: before a dispatch that touches what an earlier one wrote (or writes what one
+// read).
 class CommandEncoder
 {
   public:
@@ -171,6 +191,7 @@ class CommandEncoder
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes = 0, uint64_t fromOffset = 0, uint64_t toOffset = 0);
     void clear(const Buffer& buffer, uint32_t word = 0); // fills with a 32-bit word
     EncoderState* state() const { return state_.get(); }
+    std::unique_ptr<EncoderState> release(); // for Queue::submit
 
   private:
     std::unique_ptr<EncoderState> state_;
@@ -232,7 +253,8 @@ class Device
     const Adapter& adapter() const;
     const Limits& limits() const;
     Queue& queue();
-    Buffer createBuffer(const BufferDescriptor& descriptor); // zero-filled; throws Error naming the setting when too large
+    Buffer
+    createBuffer(const BufferDescriptor& descriptor); // zero-filled; throws Error naming the setting when too large
     ComputePipeline createComputePipeline(const ComputePipelineDescriptor& descriptor);
     BindGroup createBindGroup(const BindGroupDescriptor& descriptor);
     CommandEncoder createCommandEncoder(const std::string& label);

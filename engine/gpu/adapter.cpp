@@ -1,0 +1,155 @@
+// Which physical devices there are, what they can do, and which one is meant.
+
+#include "engine/base/error.h"
+#include "engine/gpu/vulkan.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/ranges.h>
+
+namespace gpu
+{
+
+namespace
+{
+
+constexpr uint32_t ENOUGH_TEXELS = 1u << 24; // fewer: tables are storage buffers
+
+const char* kindName(VkPhysicalDeviceType type)
+{
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "cpu";
+    default: return "other";
+    }
+}
+
+Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, uint64_t maxAllocation,
+                uint32_t timestampBits)
+{
+    VkFormatProperties format = {};
+    vkGetPhysicalDeviceFormatProperties(device, TABLE_FORMAT, &format);
+    const bool texel = limits.maxTexelBufferElements >= ENOUGH_TEXELS &&
+                       (format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT) != 0;
+
+    VkPhysicalDeviceMemoryProperties memory = {};
+    vkGetPhysicalDeviceMemoryProperties(device, &memory);
+    uint64_t heap = 0;
+    for (const VkMemoryHeap& h : std::span(memory.memoryHeaps, memory.memoryHeapCount))
+        if (h.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) heap = std::max(heap, h.size);
+
+    const uint64_t storage = std::min<uint64_t>(limits.maxStorageBufferRange, maxAllocation);
+    const uint64_t texels = std::min<uint64_t>(limits.maxTexelBufferElements * TEXEL_BYTES, maxAllocation);
+    return {
+        .storageBindingBytes = storage,
+        .tableBytes = texel ? texels : storage,
+        .uniformBindingBytes = limits.maxUniformBufferRange,
+        .storageBuffersPerStage = limits.maxPerStageDescriptorStorageBuffers,
+        .workgroupInvocations = limits.maxComputeWorkGroupInvocations,
+        .workgroupBytes = limits.maxComputeSharedMemorySize,
+        .memoryBytes = heap,
+        .timestamps = timestampBits > 0,
+        .tablesAreTexelBuffers = texel,
+    };
+}
+
+std::optional<uint32_t> computeFamily(VkPhysicalDevice device, uint32_t& timestampBits)
+{
+    uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
+        timestampBits = families[i].timestampValidBits;
+        return i;
+    }
+    return std::nullopt;
+}
+
+std::string lowerCase(std::string text)
+{
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+} // namespace
+
+std::vector<PhysicalDevice> physicalDevices(VkInstance instance)
+{
+    uint32_t count = 0;
+    vkCheck(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices", "trichrome");
+    std::vector<VkPhysicalDevice> handles(count);
+    vkCheck(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "vkEnumeratePhysicalDevices", "trichrome");
+
+    std::vector<PhysicalDevice> devices;
+    for (VkPhysicalDevice handle : handles) {
+        VkPhysicalDeviceProperties basic = {};
+        vkGetPhysicalDeviceProperties(handle, &basic);
+        if (basic.apiVersion < VK_API_VERSION_1_2) continue;
+        PhysicalDevice device = {.handle = handle};
+        const std::optional<uint32_t> family = computeFamily(handle, device.timestampBits);
+        if (!family) continue;
+        device.queueFamily = *family;
+
+        VkPhysicalDeviceVulkan12Properties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
+        VkPhysicalDeviceVulkan11Properties memory = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+                                                     .pNext = &driver};
+        VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &memory};
+        vkGetPhysicalDeviceProperties2(handle, &all);
+        device.adapter = {
+            .name = basic.deviceName,
+            .driver = fmt::format("{} {}", driver.driverName, driver.driverInfo),
+            .kind = kindName(basic.deviceType),
+            .apiVersion = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
+                                      VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion)),
+            .index = uint32_t(devices.size()),
+            .limits = limitsOf(handle, basic.limits, memory.maxMemoryAllocationSize, device.timestampBits),
+        };
+        devices.push_back(device);
+    }
+    return devices;
+}
+
+const PhysicalDevice& choose(std::span<const PhysicalDevice> devices, const std::string& wanted)
+{
+    if (devices.empty())
+        throw Error("There is no Vulkan 1.2 device with a compute queue on this machine (a software one is in the "
+                    "Debian package mesa-vulkan-drivers).");
+    std::vector<std::string> names;
+    for (const PhysicalDevice& d : devices) names.push_back(fmt::format("{}: {}", d.adapter.index, d.adapter.name));
+
+    if (wanted.empty()) {
+        for (const char* kind : {"discrete", "integrated", "virtual", "cpu"})
+            for (const PhysicalDevice& d : devices)
+                if (d.adapter.kind == kind) return d;
+        return devices.front();
+    }
+
+    uint32_t index = 0;
+    const auto [end, failure] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+    if (failure == std::errc() && end == wanted.data() + wanted.size()) {
+        if (index < devices.size()) return devices[index];
+    } else {
+        for (const PhysicalDevice& d : devices)
+            if (lowerCase(d.adapter.name).find(lowerCase(wanted)) != std::string::npos) return d;
+    }
+    throw Error("There is no Vulkan device \"{}\"; available: {}.", wanted, fmt::join(names, ", "));
+}
+
+std::vector<Adapter> enumerateAdapters()
+{
+    std::vector<Adapter> adapters;
+    try {
+        const Instance instance(false);
+        for (const PhysicalDevice& device : physicalDevices(instance.handle())) adapters.push_back(device.adapter);
+    } catch (const Error&) {
+        // No driver: the empty list says so.
+    }
+    return adapters;
+}
+
+} // namespace gpu

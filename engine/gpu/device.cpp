@@ -1,0 +1,128 @@
+// Opening and closing a device.
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/gpu/vulkan.h"
+
+namespace gpu
+{
+
+namespace
+{
+
+VkDevice openDevice(const PhysicalDevice& physical, bool validation)
+{
+    VkPhysicalDeviceVulkan12Features features12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                                   .timelineSemaphore = VK_TRUE}; // every Vulkan 1.2 device has it
+    const VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                                .pNext = &features12,
+                                                .features = {.robustBufferAccess = validation}};
+    const float priority = 1;
+    const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                           .queueFamilyIndex = physical.queueFamily,
+                                           .queueCount = 1,
+                                           .pQueuePriorities = &priority};
+    const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                     .pNext = &features,
+                                     .queueCreateInfoCount = 1,
+                                     .pQueueCreateInfos = &queue};
+    VkDevice device = VK_NULL_HANDLE;
+    const VkResult result = vkCreateDevice(physical.handle, &info, nullptr, &device);
+    if (result == VK_ERROR_INITIALIZATION_FAILED)
+        throw Error("The Vulkan device \"{}\" cannot be opened.", physical.adapter.name);
+    vkCheck(result, "vkCreateDevice", physical.adapter.name);
+    return device;
+}
+
+} // namespace
+
+DeviceState::DeviceState(const DeviceDescriptor& wanted) : options(wanted), instance(wanted.validation)
+{
+    const std::vector<PhysicalDevice> devices = physicalDevices(instance.handle());
+    physical = choose(devices, wanted.adapter);
+    vkGetPhysicalDeviceProperties(physical.handle, &properties);
+    vkGetPhysicalDeviceMemoryProperties(physical.handle, &memoryProperties);
+    device = openDevice(physical, wanted.validation);
+    vkGetDeviceQueue(device, physical.queueFamily, 0, &vkQueue);
+
+    if (instance.canName()) {
+        const auto load = [&]<class Function>(Function& function, const char* symbol) {
+            function = reinterpret_cast<Function>(vkGetInstanceProcAddr(instance.handle(), symbol));
+        };
+        load(setName, "vkSetDebugUtilsObjectNameEXT");
+        load(beginLabel, "vkCmdBeginDebugUtilsLabelEXT");
+        load(endLabel, "vkCmdEndDebugUtilsLabelEXT");
+    }
+
+    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT |
+                                                   VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                          .queueFamilyIndex = physical.queueFamily};
+    vkCheck(vkCreateCommandPool(device, &pool, nullptr, &commandPool), "vkCreateCommandPool", "device");
+    const VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    const VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    vkCheck(vkCreateSemaphore(device, &semaphore, nullptr, &timeline), "vkCreateSemaphore", "device");
+    name(VK_OBJECT_TYPE_SEMAPHORE, timeline, "submissions");
+    name(VK_OBJECT_TYPE_QUEUE, vkQueue, "queue");
+}
+
+DeviceState::~DeviceState()
+{
+    pendingWrites.reset();
+    staging.reset();
+    CHECK_EQ(liveObjects, 0u); // every buffer, pipeline and bind group must go before its device
+    CHECK_EQ(openEncoders, 0u);
+    vkDeviceWaitIdle(device); // of a lost device too
+    for (Parked& object : parked) object.destroy();
+    for (const Flight& flight : flights)
+        for (VkQueryPool page : flight.timestamps.pages) vkDestroyQueryPool(device, page, nullptr);
+    for (VkQueryPool page : freeQueryPages) vkDestroyQueryPool(device, page, nullptr);
+    for (const auto& [bindings, layout] : setLayouts) vkDestroyDescriptorSetLayout(device, layout, nullptr);
+    vkDestroySemaphore(device, timeline, nullptr);
+    vkDestroyCommandPool(device, commandPool, nullptr);
+    vkDestroyDevice(device, nullptr);
+}
+
+void DeviceState::name(VkObjectType type, uint64_t handle, const std::string& label) const
+{
+    if (!setName) return;
+    const VkDebugUtilsObjectNameInfoEXT info = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                                .objectType = type,
+                                                .objectHandle = handle,
+                                                .pObjectName = label.c_str()};
+    setName(device, &info);
+}
+
+Device Device::create(const DeviceDescriptor& descriptor)
+{
+    return Device(std::make_unique<DeviceState>(descriptor));
+}
+
+Device::Device(std::unique_ptr<DeviceState> state) : state_(std::move(state)) {}
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+const Adapter& Device::adapter() const
+{
+    return state_->physical.adapter;
+}
+const Limits& Device::limits() const
+{
+    return state_->physical.adapter.limits;
+}
+Queue& Device::queue()
+{
+    return state_->queue;
+}
+std::vector<std::string> Device::takeValidationMessages()
+{
+    return state_->instance.takeMessages();
+}
+uint64_t Device::allocatedBytes() const
+{
+    return state_->allocatedBytes;
+}
+void Device::savePipelineCache() {}
+
+} // namespace gpu

@@ -1,0 +1,137 @@
+// The Vulkan instance, its validation layer and messages.
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/gpu/vulkan.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gpu
+{
+
+namespace
+{
+
+constexpr const char* VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
+
+bool hasInstanceExtension(const char* layer, const char* name)
+{
+    uint32_t count = 0;
+    vkEnumerateInstanceExtensionProperties(layer, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data());
+    return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+bool hasLayer(const char* name)
+{
+    uint32_t count = 0;
+    vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vkEnumerateInstanceLayerProperties(&count, layers.data());
+    return std::ranges::any_of(layers, [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+}
+
+VkBool32 onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* instance)
+{
+    static_cast<Instance*>(instance)->addMessage(data->pMessage);
+    return VK_FALSE;
+}
+
+} // namespace
+
+void vkCheck(VkResult result, const char* call, const std::string& label)
+{
+    switch (result) {
+    case VK_SUCCESS: return;
+    case VK_ERROR_OUT_OF_HOST_MEMORY: throw Error("Out of memory in {} (\"{}\").", call, label);
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY: throw Error("Out of device memory in {} (\"{}\").", call, label);
+    case VK_ERROR_DEVICE_LOST:
+        throw Error("The Vulkan device was lost in {} (\"{}\"): the driver gave up or was reset.", call, label);
+    default: checkFailed(__FILE__, __LINE__, fmt::format("{} of \"{}\" gave VkResult {}", call, label, int(result)));
+    }
+}
+
+Instance::Instance(bool validation)
+{
+    std::vector<const char*> layers;
+    std::vector<const char*> extensions;
+    canName_ = hasInstanceExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (canName_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (validation) {
+        if (!hasLayer(VALIDATION_LAYER))
+            throw Error("Validation was asked for, but the Vulkan layer {} is not installed (Debian package "
+                        "vulkan-validationlayers).",
+                        VALIDATION_LAYER);
+        CHECK(canName_);
+        layers.push_back(VALIDATION_LAYER);
+        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    }
+
+    const VkDebugUtilsMessengerCreateInfoEXT messengerInfo = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = onMessage,
+        .pUserData = this,
+    };
+    const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    const VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &messengerInfo, // messages of vkCreateInstance itself
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures = enables,
+    };
+    const VkApplicationInfo application = {
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+        .pApplicationName = "trichrome",
+        .apiVersion = VK_API_VERSION_1_2,
+    };
+    const VkInstanceCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = validation ? &features : nullptr,
+        .pApplicationInfo = &application,
+        .enabledLayerCount = uint32_t(layers.size()),
+        .ppEnabledLayerNames = layers.data(),
+        .enabledExtensionCount = uint32_t(extensions.size()),
+        .ppEnabledExtensionNames = extensions.data(),
+    };
+    const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+        throw Error("There is no Vulkan driver on this machine (a software driver is in the Debian package "
+                    "mesa-vulkan-drivers).");
+    vkCheck(result, "vkCreateInstance", "trichrome");
+
+    if (validation) {
+        const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+        vkCheck(create(instance_, &messengerInfo, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT", "trichrome");
+    }
+}
+
+Instance::~Instance()
+{
+    if (messenger_) {
+        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+        destroy(instance_, messenger_, nullptr);
+    }
+    vkDestroyInstance(instance_, nullptr);
+}
+
+std::vector<std::string> Instance::takeMessages()
+{
+    const std::lock_guard lock(mutex_);
+    return std::exchange(messages_, {});
+}
+
+void Instance::addMessage(const std::string& message)
+{
+    const std::lock_guard lock(mutex_);
+    messages_.push_back(message);
+}
+
+} // namespace gpu

@@ -1,0 +1,282 @@
+// Compute pipelines and bind groups: Vulkan objects from what the shader declares.
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/gpu/shader.h"
+#include "engine/gpu/vulkan.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include <fmt/ranges.h>
+
+namespace gpu
+{
+
+namespace
+{
+
+// The constants that the shader has, by SPIR-V's number; the others are ignored.
+std::map<uint32_t, uint32_t> valuesById(const Reflection& reflection, std::span<const Constant> constants)
+{
+    std::map<uint32_t, uint32_t> values;
+    for (const SpecializationConstant& declared : reflection.constants) {
+        values.try_emplace(declared.id, declared.defaultValue);
+        for (const Constant& given : constants)
+            if (given.name == declared.name) values[declared.id] = given.value;
+    }
+    return values;
+}
+
+uint32_t valueOf(const Extent& extent, const std::map<uint32_t, uint32_t>& values)
+{
+    return extent.constantId ? values.at(*extent.constantId) : extent.literal;
+}
+
+VkShaderModule createModule(const DeviceState& device, std::span<const uint32_t> spirv, const std::string& label)
+{
+    const VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+    VkShaderModule module = VK_NULL_HANDLE;
+    vkCheck(vkCreateShaderModule(device.device, &info, nullptr, &module), "vkCreateShaderModule", label);
+    device.name(VK_OBJECT_TYPE_SHADER_MODULE, module, label);
+    return module;
+}
+
+void createLayout(PipelineState& pipeline)
+{
+    DeviceState& device = *pipeline.device;
+    std::vector<std::map<uint32_t, VkDescriptorType>> sets;
+    for (const Binding& binding : pipeline.bindings) {
+        sets.resize(std::max<size_t>(sets.size(), binding.set + 1));
+        sets[binding.set][binding.binding] = device.descriptorType(binding.kind);
+    }
+    for (const auto& set : sets) pipeline.setLayouts.push_back(device.setLayout(set));
+    const VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                             .setLayoutCount = uint32_t(pipeline.setLayouts.size()),
+                                             .pSetLayouts = pipeline.setLayouts.data()};
+    vkCheck(vkCreatePipelineLayout(device.device, &info, nullptr, &pipeline.layout), "vkCreatePipelineLayout",
+            pipeline.label);
+    device.name(VK_OBJECT_TYPE_PIPELINE_LAYOUT, pipeline.layout, pipeline.label);
+}
+
+void compile(PipelineState& pipeline, std::span<const uint32_t> spirv, const std::map<uint32_t, uint32_t>& values)
+{
+    const DeviceState& device = *pipeline.device;
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<uint32_t> data;
+    for (const auto& [id, value] : values) {
+        entries.push_back({id, uint32_t(data.size() * sizeof(uint32_t)), sizeof(uint32_t)});
+        data.push_back(value);
+    }
+    const VkSpecializationInfo specialization = {.mapEntryCount = uint32_t(entries.size()),
+                                                 .pMapEntries = entries.data(),
+                                                 .dataSize = data.size() * sizeof(uint32_t),
+                                                 .pData = data.data()};
+    const VkShaderModule module = createModule(device, spirv, pipeline.label);
+    const VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main",
+                  .pSpecializationInfo = &specialization},
+        .layout = pipeline.layout,
+    };
+    const auto start = std::chrono::steady_clock::now();
+    const VkResult result =
+        vkCreateComputePipelines(device.device, device.pipelineCache, 1, &info, nullptr, &pipeline.pipeline);
+    pipeline.compileSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    vkDestroyShaderModule(device.device, module, nullptr);
+    vkCheck(result, "vkCreateComputePipelines", pipeline.label);
+    device.name(VK_OBJECT_TYPE_PIPELINE, pipeline.pipeline, pipeline.label);
+}
+
+// The usage that a buffer must have been created with.
+Usage usageFor(Binding::Kind kind)
+{
+    switch (kind) {
+    case Binding::Kind::Storage: return Usage::Storage;
+    case Binding::Kind::Uniform: return Usage::Uniform;
+    case Binding::Kind::Table: return Usage::Table;
+    }
+    CHECK(false);
+}
+
+const char* nameOf(Usage usage)
+{
+    return usage == Usage::Storage ? "Storage" : usage == Usage::Uniform ? "Uniform" : "Table";
+}
+
+// The names given must be exactly those declared.
+void checkNames(const BindGroupDescriptor& descriptor, std::span<const Binding> declared)
+{
+    std::vector<std::string> missing;
+    std::vector<std::string> unknown;
+    std::set<std::string> given;
+    for (const auto& [name, buffer] : descriptor.buffers) {
+        if (!given.insert(name).second) throw Error("Bind group \"{}\" names \"{}\" twice.", descriptor.label, name);
+        if (!buffer || !buffer->state())
+            throw Error("Bind group \"{}\" has no buffer for \"{}\".", descriptor.label, name);
+        if (std::ranges::find(declared, name, &Binding::name) == declared.end()) unknown.push_back(name);
+    }
+    for (const Binding& binding : declared)
+        if (!given.contains(binding.name)) missing.push_back(binding.name);
+    if (missing.empty() && unknown.empty()) return;
+    throw Error("Bind group \"{}\" does not fit set {} of pipeline \"{}\": missing [{}], unknown [{}].",
+                descriptor.label, descriptor.set, descriptor.pipeline->label(), fmt::join(missing, ", "),
+                fmt::join(unknown, ", "));
+}
+
+} // namespace
+
+VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
+{
+    if (kind == Binding::Kind::Uniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    if (kind == Binding::Kind::Table && physical.adapter.limits.tablesAreTexelBuffers)
+        return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+VkDescriptorSetLayout DeviceState::setLayout(const std::map<uint32_t, VkDescriptorType>& bindings)
+{
+    VkDescriptorSetLayout& layout = setLayouts[bindings];
+    if (layout) return layout;
+    std::vector<VkDescriptorSetLayoutBinding> list;
+    for (const auto& [number, type] : bindings)
+        list.push_back({.binding = number,
+                        .descriptorType = type,
+                        .descriptorCount = 1,
+                        .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT});
+    const VkDescriptorSetLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                  .bindingCount = uint32_t(list.size()),
+                                                  .pBindings = list.data()};
+    vkCheck(vkCreateDescriptorSetLayout(device, &info, nullptr, &layout), "vkCreateDescriptorSetLayout", "set layout");
+    return layout;
+}
+
+ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& descriptor)
+{
+    return whileDoing(fmt::format("creating pipeline \"{}\"", descriptor.label), [&] {
+        const bool texel = limits().tablesAreTexelBuffers;
+        const std::string& shader = descriptor.shader.empty() ? descriptor.label : descriptor.shader;
+        const std::vector<uint32_t> spirv = loadShader(shader, texel);
+        Reflection reflection = reflect(spirv, shader, texel);
+        const std::map<uint32_t, uint32_t> values = valuesById(reflection, descriptor.constants);
+
+        auto pipeline = std::make_unique<PipelineState>(*state_);
+        pipeline->label = descriptor.label;
+        pipeline->bindings = std::move(reflection.bindings);
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            pipeline->workgroupSize[axis] = valueOf(reflection.workgroupSize[axis], values);
+        createLayout(*pipeline);
+        compile(*pipeline, spirv, values);
+        return ComputePipeline(std::move(pipeline));
+    });
+}
+
+BindGroup Device::createBindGroup(const BindGroupDescriptor& descriptor)
+{
+    CHECK(descriptor.pipeline && descriptor.pipeline->state());
+    const PipelineState& pipeline = *descriptor.pipeline->state();
+    std::vector<Binding> declared;
+    for (const Binding& binding : pipeline.bindings)
+        if (binding.set == descriptor.set) declared.push_back(binding);
+    checkNames(descriptor, declared);
+    CHECK_LT(descriptor.set, pipeline.setLayouts.size());
+
+    auto group = std::make_unique<BindGroupState>(*state_);
+    group->label = descriptor.label;
+    group->set = descriptor.set;
+    group->layout = pipeline.setLayouts[descriptor.set];
+
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (const Binding& binding : declared) sizes.push_back({state_->descriptorType(binding.kind), 1});
+    const VkDescriptorPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                                 .maxSets = 1,
+                                                 .poolSizeCount = uint32_t(sizes.size()),
+                                                 .pPoolSizes = sizes.data()};
+    vkCheck(vkCreateDescriptorPool(state_->device, &poolInfo, nullptr, &group->pool), "vkCreateDescriptorPool",
+            descriptor.label);
+    const VkDescriptorSetAllocateInfo setInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                                 .descriptorPool = group->pool,
+                                                 .descriptorSetCount = 1,
+                                                 .pSetLayouts = &group->layout};
+    vkCheck(vkAllocateDescriptorSets(state_->device, &setInfo, &group->descriptors), "vkAllocateDescriptorSets",
+            descriptor.label);
+    state_->name(VK_OBJECT_TYPE_DESCRIPTOR_SET, group->descriptors, descriptor.label);
+
+    for (const Binding& binding : declared) {
+        const auto entry = std::ranges::find(descriptor.buffers, binding.name, [](const auto& e) { return e.first; });
+        const BufferState& buffer = *entry->second->state();
+        const Usage usage = usageFor(binding.kind);
+        if (!has(buffer.usage, usage))
+            throw Error("Bind group \"{}\": buffer \"{}\" for \"{}\" lacks Usage::{}.", descriptor.label, buffer.label,
+                        binding.name, nameOf(usage));
+        const VkDescriptorBufferInfo range = {buffer.buffer, 0, VK_WHOLE_SIZE};
+        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                            .dstSet = group->descriptors,
+                                            .dstBinding = binding.binding,
+                                            .descriptorCount = 1,
+                                            .descriptorType = state_->descriptorType(binding.kind),
+                                            .pBufferInfo = &range,
+                                            .pTexelBufferView = &buffer.view};
+        vkUpdateDescriptorSets(state_->device, 1, &write, 0, nullptr);
+        group->buffers[binding.binding] = buffer.buffer;
+    }
+    return BindGroup(std::move(group));
+}
+
+PipelineState::PipelineState(DeviceState& owner) : device(&owner)
+{
+    ++device->liveObjects;
+}
+
+PipelineState::~PipelineState()
+{
+    device->park([vk = device->device, layout = layout, pipeline = pipeline] {
+        vkDestroyPipeline(vk, pipeline, nullptr);
+        vkDestroyPipelineLayout(vk, layout, nullptr);
+    });
+    --device->liveObjects;
+}
+
+BindGroupState::BindGroupState(DeviceState& owner) : device(&owner)
+{
+    ++device->liveObjects;
+}
+
+BindGroupState::~BindGroupState()
+{
+    device->park([vk = device->device, pool = pool] { vkDestroyDescriptorPool(vk, pool, nullptr); });
+    --device->liveObjects;
+}
+
+ComputePipeline::ComputePipeline(std::unique_ptr<PipelineState> state) : state_(std::move(state)) {}
+ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
+ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
+ComputePipeline::~ComputePipeline() = default;
+const std::string& ComputePipeline::label() const
+{
+    return state_->label;
+}
+std::span<const Binding> ComputePipeline::bindings() const
+{
+    return state_->bindings;
+}
+std::array<uint32_t, 3> ComputePipeline::workgroupSize() const
+{
+    return state_->workgroupSize;
+}
+double ComputePipeline::compileSeconds() const
+{
+    return state_->compileSeconds;
+}
+
+BindGroup::BindGroup(std::unique_ptr<BindGroupState> state) : state_(std::move(state)) {}
+BindGroup::BindGroup(BindGroup&&) noexcept = default;
+BindGroup& BindGroup::operator=(BindGroup&&) noexcept = default;
+BindGroup::~BindGroup() = default;
+
+} // namespace gpu

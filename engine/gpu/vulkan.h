@@ -1,0 +1,219 @@
+#pragma once
+// What lies behind gpu.h. Included inside engine/gpu and by its tests only.
+
+#include "engine/gpu/gpu.h"
+#include "engine/gpu/hazards.h"
+
+#include <vulkan/vulkan.h>
+
+#include <deque>
+#include <map>
+#include <mutex>
+
+namespace gpu
+{
+
+constexpr VkFormat TABLE_FORMAT = VK_FORMAT_R32G32B32A32_UINT; // of tables that are texel buffers
+constexpr uint64_t TEXEL_BYTES = 16;
+
+// Out of memory and device loss are the world's faults (Error); any other failure is a bug of ours (CHECK).
+void vkCheck(VkResult result, const char* call, const std::string& label);
+
+// A Vulkan instance with its messenger. Not movable: the messenger points at it.
+class Instance
+{
+  public:
+    explicit Instance(bool validation); // throws Error: no driver, no validation layer
+    ~Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    VkInstance handle() const { return instance_; }
+    bool canName() const { return canName_; } // VK_EXT_debug_utils
+    std::vector<std::string> takeMessages();
+    void addMessage(const std::string& message); // from any thread
+
+  private:
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    bool canName_ = false;
+    std::mutex mutex_;
+    std::vector<std::string> messages_;
+};
+
+// An adapter and what is needed to open it.
+struct PhysicalDevice {
+    VkPhysicalDevice handle = VK_NULL_HANDLE;
+    uint32_t queueFamily = 0;
+    uint32_t timestampBits = 0;
+    Adapter adapter;
+};
+std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
+// By index or part of the name; empty: discrete, integrated, virtual, cpu, other. Throws Error that lists what there
+// is.
+const PhysicalDevice& choose(std::span<const PhysicalDevice> devices, const std::string& wanted);
+
+struct BufferState {
+    explicit BufferState(DeviceState& owner);
+    ~BufferState(); // parks the Vulkan objects
+    BufferState(const BufferState&) = delete;
+    BufferState& operator=(const BufferState&) = delete;
+
+    DeviceState* device;
+    std::string label;
+    uint64_t size = 0; // as asked for; Vulkan's is rounded up to 16
+    Usage usage = Usage::Storage;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkBufferView view = VK_NULL_HANDLE; // of tables that are texel buffers
+    uint64_t allocated = 0;
+    std::byte* mapped = nullptr; // if the host sees the memory
+};
+
+struct PipelineState {
+    explicit PipelineState(DeviceState& owner);
+    ~PipelineState();
+    PipelineState(const PipelineState&) = delete;
+    PipelineState& operator=(const PipelineState&) = delete;
+
+    DeviceState* device;
+    std::string label;
+    std::vector<Binding> bindings;
+    std::vector<VkDescriptorSetLayout> setLayouts; // owned by the device
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    std::array<uint32_t, 3> workgroupSize = {1, 1, 1};
+    double compileSeconds = 0;
+};
+
+struct BindGroupState {
+    explicit BindGroupState(DeviceState& owner);
+    ~BindGroupState();
+    BindGroupState(const BindGroupState&) = delete;
+    BindGroupState& operator=(const BindGroupState&) = delete;
+
+    DeviceState* device;
+    std::string label;
+    uint32_t set = 0;
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE; // owned by the device
+    VkDescriptorPool pool = VK_NULL_HANDLE;        // of this one set
+    VkDescriptorSet descriptors = VK_NULL_HANDLE;
+    std::map<uint32_t, VkBuffer> buffers; // by binding
+};
+
+// Timestamps around the dispatches of one command buffer, in pages of fixed size. Dispatch i has queries 2i and 2i + 1.
+struct Timestamps {
+    static constexpr uint32_t DISPATCHES_PER_PAGE = 64;
+    std::vector<VkQueryPool> pages;
+    std::vector<std::string> labels;
+};
+
+struct EncoderState {
+    EncoderState(DeviceState& owner, const std::string& label);
+    ~EncoderState(); // an encoder that was never submitted gives its things back
+    EncoderState(const EncoderState&) = delete;
+    EncoderState& operator=(const EncoderState&) = delete;
+
+    void beforeWork(std::span<const BufferUse<VkBuffer>> uses); // the barrier, if one is needed
+    void dispatch(const Dispatch& dispatch);
+    void copy(const BufferState& from, const BufferState& to, const VkBufferCopy& region);
+    void fill(const BufferState& buffer, uint32_t word);
+    void finish(); // ends recording
+
+    DeviceState* device;
+    std::string label;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    HazardTracker<VkBuffer> hazards;
+    Timestamps timestamps;
+
+  private:
+    void timestamp(uint32_t query);
+};
+
+// Work that the queue has been given and that is not known to be done.
+struct Flight {
+    Submission submission = 0;
+    std::vector<VkCommandBuffer> commands;
+    Timestamps timestamps;
+    uint64_t stagingHead = 0; // the ring is free up to here once this has finished
+};
+
+// A ring of host-visible memory that Queue::write copies through. Positions only grow; modulo gives the offset.
+struct StagingRing {
+    static constexpr uint64_t BYTES = uint64_t{8} << 20;
+    // The offset of `bytes` bytes in one piece, or nothing when work in flight still reads that part.
+    std::optional<uint64_t> allocate(uint64_t bytes);
+    uint64_t head = 0;
+    uint64_t tail = 0;
+};
+
+struct DeviceState {
+    DeviceState(const DeviceDescriptor& descriptor);
+    ~DeviceState();
+    DeviceState(const DeviceState&) = delete;
+    DeviceState& operator=(const DeviceState&) = delete;
+
+    // Destroys now, or when all submitted and all currently recorded work has finished.
+    void park(std::function<void()> destroy);
+    void retire(); // notes what has finished: timings, parked objects, staging memory
+    Submission finished() const;
+    Submission submit(std::unique_ptr<EncoderState> encoder); // null: only pending writes
+    void wait(Submission submission);
+    EncoderState& writes(); // the encoder of pending writes
+
+    std::unique_ptr<BufferState> createBuffer(const BufferDescriptor& descriptor);
+    VkDescriptorSetLayout setLayout(const std::map<uint32_t, VkDescriptorType>& bindings);
+    VkDescriptorType descriptorType(Binding::Kind kind) const;
+    VkCommandBuffer takeCommandBuffer();
+    VkQueryPool takeQueryPage();
+    void recycle(std::vector<VkCommandBuffer> commands, std::vector<VkQueryPool> pages);
+    void name(VkObjectType type, uint64_t handle, const std::string& label) const;
+    template <class Handle>
+    void name(VkObjectType type, Handle handle, const std::string& label) const
+    {
+        name(type, reinterpret_cast<uint64_t>(handle), label);
+    }
+
+    DeviceDescriptor options;
+    Instance instance;
+    PhysicalDevice physical;
+    VkPhysicalDeviceProperties properties = {};
+    VkPhysicalDeviceMemoryProperties memoryProperties = {};
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue vkQueue = VK_NULL_HANDLE;
+    VkCommandPool commandPool = VK_NULL_HANDLE;
+    VkSemaphore timeline = VK_NULL_HANDLE; // its value is the last finished submission
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+    Queue queue{*this};
+
+    Submission submitted = 0;
+    uint32_t openEncoders = 0;
+    uint32_t liveObjects = 0; // buffers, pipelines, bind groups; must be 0 at the end
+    uint64_t allocatedBytes = 0;
+
+    std::deque<Flight> flights;
+    struct Parked {
+        std::optional<Submission> until; // not yet known while an encoder may hold the object
+        std::function<void()> destroy;
+    };
+    std::vector<Parked> parked;
+    std::vector<VkCommandBuffer> freeCommandBuffers;
+    std::vector<VkQueryPool> freeQueryPages;
+    std::vector<Timing> timings;
+    std::unique_ptr<EncoderState> pendingWrites;
+    StagingRing ring;
+    std::unique_ptr<BufferState> staging;
+    std::map<std::map<uint32_t, VkDescriptorType>, VkDescriptorSetLayout> setLayouts;
+
+    // Replaceable, so that a test can lose the device.
+    PFN_vkQueueSubmit queueSubmit = vkQueueSubmit;
+    PFN_vkWaitSemaphores waitSemaphores = vkWaitSemaphores;
+    PFN_vkCmdBeginDebugUtilsLabelEXT beginLabel = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT endLabel = nullptr;
+    PFN_vkSetDebugUtilsObjectNameEXT setName = nullptr;
+
+  private:
+    void collect(const Flight& flight);
+};
+
+} // namespace gpu

@@ -1,0 +1,82 @@
+#pragma once
+// The arithmetic of statistical tests: moments, tail probabilities, z, t and chi-squared tests, the jackknife.
+// Tests over the tiles of pictures, built on these, are in tile_tests.h.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+namespace support
+{
+
+// Streaming mean and central moments up to the fourth (Welford 1962; merging: Chan et al. 1979, Pebay 2008).
+class Moments
+{
+  public:
+    void add(double value);
+    void merge(const Moments& other);
+
+    uint64_t count() const { return count_; }
+    double mean() const { return mean_; }
+    double variance() const;       // of one value, unbiased; 0 below two values
+    double varianceOfMean() const; // of mean()
+    double excessKurtosis() const; // 0 for a Gaussian; 0 when all values are equal
+
+    // Relative standard deviation of variance(): sqrt((excess kurtosis) / n + 2 / (n - 1)). Heavy tails make it large:
+    // a z-test on these moments is to be trusted when it is small (we ask for 10%).
+    double relativeErrorOfVariance() const;
+
+  private:
+    uint64_t count_ = 0;
+    double mean_ = 0;
+    double sum2_ = 0, sum3_ = 0, sum4_ = 0; // sums of powers of deviations from the mean
+};
+
+// A measured mean, how well it is known, and from how much its variance was estimated.
+struct Estimate {
+    double mean = 0;
+    double varianceOfMean = 0;
+    double degreesOfFreedom = 0; // of varianceOfMean; infinity: it is known exactly
+};
+Estimate estimateOf(const Moments& moments);
+
+double normalUpperTail(double z);                              // P(Z > z)
+double normalQuantile(double p);                               // z with P(Z < z) = p
+double studentUpperTail(double t, double degreesOfFreedom);    // P(T > t); infinite degrees: normal
+double studentQuantile(double p, double degreesOfFreedom);     // t with P(T < t) = p
+double chiSquaredUpperTail(double x, double degreesOfFreedom); // P(X > x)
+
+// Level of each of `tests` independent tests such that any of them rejects a true hypothesis with probability `family`.
+double sidakLevel(double family, uint64_t tests);
+
+// Welch's two-sample t: difference of means over its standard error. The sum of both variances also holds the square of
+// `relativeRounding` times the larger mean: two exact results that differ by rounding agree.
+struct Difference {
+    double difference = 0;
+    double standardError = 0;
+    double degreesOfFreedom = 0;
+    double p = 1; // two-sided
+};
+Difference compare(const Estimate& a, const Estimate& b, double relativeRounding = 0);
+
+// Two one-sided tests: true when |a - b| < margin is shown at the level (its negation is rejected).
+bool showsEquivalence(const Difference& difference, double margin, double level);
+
+// Pearson's test that `observed` counts come from `expected` ones. Neighboring bins are pooled until each holds at
+// least `minimumExpected`. The totals must agree within rounding: compare equal sample counts.
+struct ChiSquared {
+    double statistic = 0;
+    uint64_t degreesOfFreedom = 0;
+    double p = 1;
+};
+ChiSquared chiSquaredTest(std::span<const double> observed, std::span<const double> expected,
+                          double minimumExpected = 5);
+
+// Leave-one-out: bias-corrected value of a statistic of the samples, and its standard error (Quenouille, Tukey).
+struct Jackknife {
+    double value = 0;
+    double standardError = 0;
+};
+Jackknife jackknife(std::span<const double> samples, const std::function<double(std::span<const double>)>& statistic);
+
+} // namespace support

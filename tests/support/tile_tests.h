@@ -1,0 +1,64 @@
+#pragma once
+// Do two renderers make the same picture? Asked tile by tile (8x8 pixels, each channel), so that opposite errors in
+// different places cannot cancel.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/image/image.h"
+#include "tests/support/statistics.h"
+
+namespace support
+{
+
+constexpr uint32_t TILE_SIZE = 8; // pixels
+
+// What is known of the mean of every tile, rows of tiles from the top.
+struct TileEstimates {
+    uint32_t columns = 0;
+    uint32_t rows = 0;
+    std::vector<std::array<Estimate, 3>> tiles;
+};
+
+// A picture whose pixels were sampled independently of each other.
+struct PixelEstimates {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<std::array<Estimate, 3>> pixels; // row 0 at the top
+};
+TileEstimates tilesOf(const PixelEstimates& picture);
+
+// From whole pictures of independent runs: makes no assumption on how pixels within a run depend on each other.
+class TileRuns
+{
+  public:
+    void add(const image::Image& run);
+    TileEstimates estimates() const; // at least two runs
+    const std::vector<std::array<Moments, 3>>& moments() const { return tiles_; }
+
+  private:
+    uint32_t width_ = 0, height_ = 0;
+    std::vector<std::array<Moments, 3>> tiles_;
+};
+
+// The verdict of a test over all tiles and channels.
+struct TileVerdict {
+    bool passes = false;
+    std::string summary; // for the person: worst tile, its means, z or margin
+};
+
+// Rejects (passes = false) when some tile differs: Welch's t of each tile and channel, at the level that makes a false
+// rejection anywhere have the probability `familyLevel` (Sidak). Float32 rounding of 1e-6 is allowed for.
+TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel = 1e-3);
+
+// Passes when every tile and channel is shown to differ by less than `margin` times the larger of its own mean and the
+// mean of the picture in that channel, by two one-sided tests at `level` each (an intersection-union test: the
+// probability of passing with a difference beyond the margin anywhere is at most `level`). A noisy comparison fails.
+TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, double margin = 0.01,
+                               double level = 0.05);
+
+} // namespace support
