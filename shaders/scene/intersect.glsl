@@ -162,7 +162,8 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     bool met = inside && total != 0.0;
     float inverse = 1.0 / (met ? total : 1.0);
     barycentric = vec2(w1, w2) * inverse;
-    t = (w0 * dot(a, r.direction) + w1 * dot(b, r.direction) + w2 * dot(c, r.direction)) * inverse;
+    float depth = dot(a, r.direction);
+    t = depth + (w1 * (dot(b, r.direction) - depth) + w2 * (dot(c, r.direction) - depth)) * inverse;
     return met;
 }
 

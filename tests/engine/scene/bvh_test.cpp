@@ -286,7 +286,7 @@ TEST(Bvh, OfAGeometricSeriesFitsTheStack)
 // going down the spine, so that the cheapest wide tree is as deep as the spine.
 TEST(BvhCollapse, BoundsTheDepthOfADegenerateTree)
 {
-    constexpr uint32_t BUSH_LEVELS = 5;
+    constexpr uint32_t BUSH_LEVELS = 7;
     scene::BinaryTree tree;
     const auto bush = [&](auto& self, const Box& box, uint32_t levels) -> uint32_t {
         const uint32_t left = levels == 0 ? uint32_t(tree.size()) : self(self, box, levels - 1);
