@@ -142,6 +142,7 @@ Buffer Device::createBuffer(const BufferDescriptor& descriptor)
     return Buffer(state_->createBuffer(descriptor));
 }
 
+Buffer::Buffer() noexcept = default;
 Buffer::Buffer(std::unique_ptr<BufferState> state) : state_(std::move(state)) {}
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;

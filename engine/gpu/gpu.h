@@ -87,7 +87,7 @@ struct BufferDescriptor {
 class Buffer
 {
   public:
-    Buffer() = default;
+    Buffer() noexcept;
     explicit Buffer(std::unique_ptr<BufferState> state);
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
@@ -127,7 +127,7 @@ struct Binding {
 class ComputePipeline
 {
   public:
-    ComputePipeline() = default;
+    ComputePipeline() noexcept;
     explicit ComputePipeline(std::unique_ptr<PipelineState> state);
     ComputePipeline(ComputePipeline&&) noexcept;
     ComputePipeline& operator=(ComputePipeline&&) noexcept;
@@ -154,7 +154,7 @@ struct BindGroupDescriptor {
 class BindGroup
 {
   public:
-    BindGroup() = default;
+    BindGroup() noexcept;
     explicit BindGroup(std::unique_ptr<BindGroupState> state);
     BindGroup(BindGroup&&) noexcept;
     BindGroup& operator=(BindGroup&&) noexcept;

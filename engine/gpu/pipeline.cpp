@@ -253,6 +253,7 @@ BindGroupState::~BindGroupState()
     --device->liveObjects;
 }
 
+ComputePipeline::ComputePipeline() noexcept = default;
 ComputePipeline::ComputePipeline(std::unique_ptr<PipelineState> state) : state_(std::move(state)) {}
 ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
 ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
@@ -274,6 +275,7 @@ double ComputePipeline::compileSeconds() const
     return state_->compileSeconds;
 }
 
+BindGroup::BindGroup() noexcept = default;
 BindGroup::BindGroup(std::unique_ptr<BindGroupState> state) : state_(std::move(state)) {}
 BindGroup::BindGroup(BindGroup&&) noexcept = default;
 BindGroup& BindGroup::operator=(BindGroup&&) noexcept = default;

@@ -12,6 +12,7 @@
 #include "shared/bvh.h"
 
 const uint NO_HIT = 0xffffffffu;
+const float RAY_MAX = 1e30; // farther than anything
 
 struct Ray {
     vec3 origin;
@@ -233,11 +234,17 @@ Hit closestHit(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, false)
 bool occluded(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, true).triangle != NO_HIT; }
 
 // Where a ray that leaves a surface point starts: off the surface, on the side of `direction`, by more than rounding can
-// have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices.
+// have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices, or a bound of it.
 vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction, float magnitude)
 {
     float side = dot(geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
     return position + (side * ORIGIN_OFFSET * magnitude) * geometricNormal;
+}
+
+// The same in a scene whose coordinates are at most 1.
+vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction)
+{
+    return offsetOrigin(position, geometricNormal, direction, 1.0);
 }
 
 #endif

@@ -1,0 +1,47 @@
+#include "engine/scene/gpu_scene.h"
+
+namespace scene
+{
+
+namespace
+{
+
+gpu::Buffer uploadTable(gpu::Device& device, const char* label, std::span<const glm::uvec4> rows)
+{
+    const glm::uvec4 nothing(0);
+    if (rows.empty()) rows = std::span(&nothing, 1);
+    gpu::Buffer buffer = device.createBuffer({.label = label, .size = rows.size_bytes(), .usage = gpu::Usage::Table});
+    device.queue().write(buffer, std::as_bytes(rows));
+    return buffer;
+}
+
+} // namespace
+
+GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
+    : nodes_(uploadTable(device, "Nodes", tables.bvh.nodes)), triangles_(uploadTable(device, "Triangles", tables.bvh.triangles)),
+      attributes_(uploadTable(device, "Attributes", tables.attributes)), texels_(uploadTable(device, "Texels", tables.texels)),
+      sceneData_(uploadTable(device, "SceneData", tables.sceneData)),
+      uniform_(device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform}))
+{
+    device.queue().writeValue(uniform_, tables.uniform);
+}
+
+gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const
+{
+    return device.createBindGroup({.label = "scene",
+                                   .pipeline = &pipeline,
+                                   .set = SET_SCENE,
+                                   .buffers = {{"Nodes", &nodes_},
+                                               {"Triangles", &triangles_},
+                                               {"Attributes", &attributes_},
+                                               {"Texels", &texels_},
+                                               {"SceneData", &sceneData_},
+                                               {"Scene", &uniform_}}});
+}
+
+uint64_t GpuScene::bytes() const
+{
+    return nodes_.size() + triangles_.size() + attributes_.size() + texels_.size() + sceneData_.size() + uniform_.size();
+}
+
+} // namespace scene

@@ -1,0 +1,173 @@
+#include "engine/scene/light_tables.h"
+
+#include "engine/base/check.h"
+#include "engine/scene/alias_table.h"
+
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace scene
+{
+
+namespace
+{
+
+using std::numbers::pi;
+
+double largest(const glm::dvec3& v) { return std::max(std::max(v.x, v.y), v.z); }
+
+glm::uvec4 row(const glm::dvec3& v, double w)
+{
+    return std::bit_cast<glm::uvec4>(glm::vec4(float(v.x), float(v.y), float(v.z), float(w)));
+}
+
+double linearFromSrgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+
+// Mean of the largest channel over the whole image, linear: how much of the emission a texture lets through, roughly.
+double meanOfLargest(const Image& image)
+{
+    double sum = 0;
+    for (size_t i = 0; i < image.rgba.size(); i += 4)
+        sum += linearFromSrgb(std::max(std::max(image.rgba[i], image.rgba[i + 1]), image.rgba[i + 2]) / 255.0);
+    return sum / (double(image.rgba.size()) / 4);
+}
+
+// Intensity in scaled lengths: E = I / d^2 stays the same irradiance.
+glm::dvec3 scaledIntensity(const PunctualLight& light, double lengthScale)
+{
+    const double factor = light.kind == LightKind::Directional ? 1 : lengthScale * lengthScale;
+    return glm::dvec3(light.intensity) * factor;
+}
+
+double largestLight(const Scene& scene, double lengthScale)
+{
+    double value = 0;
+    for (const Triangle& triangle : scene.triangles) {
+        const Material& material = scene.materials[triangle.material];
+        value = std::max(value, largest(glm::dvec3(material.emission)));
+        if (material.unlit) value = std::max(value, largest(glm::dvec3(glm::vec3(material.baseColor))));
+    }
+    for (const glm::vec3& radiance : scene.environment.radiance) value = std::max(value, largest(glm::dvec3(radiance)));
+    for (const PunctualLight& light : scene.lights) value = std::max(value, largest(scaledIntensity(light, lengthScale)));
+    return value;
+}
+
+struct Candidate {
+    uint32_t kind = 0;
+    uint32_t index = 0;
+    double power = 0;
+};
+
+// Emissive triangles of positive area. A textured emitter counts with its image's mean: the pick probability may be rough,
+// the estimate stays unbiased.
+void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, double radianceScale,
+                  std::vector<Candidate>& candidates)
+{
+    std::vector<double> exitance(scene.materials.size());
+    for (size_t i = 0; i < exitance.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (material.unlit) continue;
+        exitance[i] = pi * radianceScale * largest(glm::dvec3(material.emission)) * (material.doubleSided ? 2 : 1);
+        if (exitance[i] > 0 && material.emissiveTexture.image != NONE)
+            exitance[i] *= meanOfLargest(scene.images[material.emissiveTexture.image]);
+    }
+    for (size_t t = 0; t < scene.triangles.size(); ++t) {
+        const Triangle& triangle = scene.triangles[t];
+        if (exitance[triangle.material] <= 0) continue;
+        const auto corner = [&](size_t i) { return positions[triangle.vertices[i]]; };
+        // In float as the shaders have it: what has no area there cannot be sampled there.
+        const float twiceArea = glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+        if (!(twiceArea > 0) || !std::isfinite(twiceArea)) continue;
+        candidates.push_back({shared::LIGHT_TRIANGLE, uint32_t(t), exitance[triangle.material] * 0.5 * double(twiceArea)});
+    }
+}
+
+double punctualPower(const PunctualLight& light, const glm::dvec3& intensity, double radius)
+{
+    switch (light.kind) {
+    case LightKind::Point: return 4 * pi * largest(intensity);
+    case LightKind::Spot: return 2 * pi * (1 - std::cos(double(light.outerConeAngle))) * largest(intensity);
+    case LightKind::Directional: return pi * radius * radius * largest(intensity);
+    }
+    return 0;
+}
+
+void addPunctual(const Scene& scene, double lengthScale, double radius, LightTables& tables, std::vector<Candidate>& candidates)
+{
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        const PunctualLight& light = scene.lights[i];
+        const glm::dvec3 intensity = scaledIntensity(light, lengthScale) * tables.radianceScale;
+        const double cosOuter = std::cos(double(light.outerConeAngle)), cosInner = std::cos(double(light.innerConeAngle));
+        const bool spot = light.kind == LightKind::Spot;
+        tables.punctual.push_back(row(glm::dvec3(light.position) * lengthScale, cosOuter));
+        tables.punctual.push_back(row(intensity, spot ? 1 / (cosInner - cosOuter) : 0));
+        tables.punctual.push_back(row(glm::dvec3(light.direction), 0));
+        tables.counts.points += light.kind == LightKind::Point;
+        tables.counts.spots += spot;
+        tables.counts.directionals += light.kind == LightKind::Directional;
+        const double power = punctualPower(light, intensity, radius);
+        const uint32_t kind = light.kind == LightKind::Directional ? shared::LIGHT_DIRECTIONAL : shared::LIGHT_PUNCTUAL;
+        if (power > 0) candidates.push_back({kind, uint32_t(i), power});
+    }
+}
+
+// The environment's rows, and its power: radiance over the sphere of directions, through the scene's disk.
+double addEnvironment(const Environment& environment, double radius, LightTables& tables)
+{
+    if (environment.width == 0) return 0;
+    const size_t count = environment.radiance.size();
+    std::vector<double> power(count), solidAngle(environment.height);
+    double total = 0;
+    for (uint32_t y = 0; y < environment.height; ++y)
+        solidAngle[y] = 2 * pi / environment.width *
+                        (std::cos(pi * y / environment.height) - std::cos(pi * (y + 1.0) / environment.height));
+    for (size_t i = 0; i < count; ++i) {
+        power[i] = largest(glm::dvec3(environment.radiance[i]) * tables.radianceScale) * solidAngle[i / environment.width];
+        total += power[i];
+    }
+    const std::vector<AliasEntry> aliases = buildAliasTable(power);
+    for (size_t i = 0; i < count; ++i)
+        tables.environment.push_back(row(glm::dvec3(environment.radiance[i]) * tables.radianceScale,
+                                         total > 0 ? power[i] / total / solidAngle[i / environment.width] : 0));
+    for (size_t i = 0; i < count; i += 2) {
+        const AliasEntry& a = aliases[i];
+        const AliasEntry& b = aliases[std::min(i + 1, count - 1)];
+        tables.environmentAliases.emplace_back(std::bit_cast<uint32_t>(a.threshold), a.alias, std::bit_cast<uint32_t>(b.threshold),
+                                               b.alias);
+    }
+    tables.counts.environments = 1;
+    return pi * radius * radius * total;
+}
+
+} // namespace
+
+LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius)
+{
+    LightTables tables;
+    const double value = largestLight(scene, lengthScale);
+    if (value > 0) tables.radianceScale = std::exp2(-std::round(std::log2(value)));
+
+    std::vector<Candidate> candidates;
+    addTriangles(scene, positions, tables.radianceScale, candidates);
+    tables.counts.emissiveTriangles = candidates.size();
+    addPunctual(scene, lengthScale, radius, tables, candidates);
+    const double environmentPower = addEnvironment(scene.environment, std::max(radius, 0.5), tables);
+    if (environmentPower > 0) candidates.push_back({shared::LIGHT_ENVIRONMENT, 0, environmentPower});
+
+    std::vector<double> powers;
+    for (const Candidate& candidate : candidates) powers.push_back(candidate.power);
+    const std::vector<AliasEntry> aliases = buildAliasTable(powers);
+    tables.lightOfTriangle.assign(scene.triangles.size(), shared::NO_INDEX);
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        const Candidate& candidate = candidates[i];
+        CHECK(candidate.index < 1u << 30);
+        tables.lights.emplace_back(std::bit_cast<uint32_t>(aliases[i].threshold), aliases[i].alias,
+                                   std::bit_cast<uint32_t>(aliases[i].probability), candidate.kind | candidate.index << 2);
+        if (candidate.kind == shared::LIGHT_TRIANGLE) tables.lightOfTriangle[candidate.index] = uint32_t(i);
+        if (candidate.kind == shared::LIGHT_ENVIRONMENT) tables.environmentPick = aliases[i].probability;
+    }
+    return tables;
+}
+
+} // namespace scene

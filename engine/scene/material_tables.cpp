@@ -1,0 +1,178 @@
+#include "engine/scene/material_tables.h"
+
+#include "engine/base/check.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+
+namespace scene
+{
+
+namespace
+{
+
+// As in shaders/scene/bsdf.glsl: below, specular lobes are Dirac.
+constexpr float DIRAC_ROUGHNESS = 1.0f / 64.0f;
+// A solid body of almost the index of air bends nothing: it is thin and clear (ARCHITECTURE.md).
+constexpr float INDEX_OF_AIR = 1.0f / 1024.0f;
+
+glm::uvec4 row(float x, float y, float z, float w) { return std::bit_cast<glm::uvec4>(glm::vec4(x, y, z, w)); }
+
+bool isIdentity(const TextureUse& use) { return use.row0 == glm::vec3(1, 0, 0) && use.row1 == glm::vec3(0, 1, 0); }
+
+// Smallest and largest value of the image's green channel (roughness), in [0, 1].
+std::pair<float, float> greenRange(const Image& image)
+{
+    uint8_t low = 255, high = 0;
+    for (size_t i = 1; i < image.rgba.size(); i += 4) {
+        low = std::min(low, image.rgba[i]);
+        high = std::max(high, image.rgba[i]);
+    }
+    return {float(low) / 255.0f, float(high) / 255.0f};
+}
+
+class Builder
+{
+  public:
+    explicit Builder(const Scene& scene, double radianceScale) : scene_(scene), radianceScale_(radianceScale) {}
+
+    MaterialTables build()
+    {
+        std::vector<bool> used(scene_.materials.size());
+        for (const Triangle& triangle : scene_.triangles) used[triangle.material] = true;
+        for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(scene_.materials[i], used[i]);
+        tables_.features.manyMaterials = scene_.materials.size() > 1;
+        if (tables_.texels.empty()) tables_.texels.emplace_back(0);
+        return std::move(tables_);
+    }
+
+  private:
+    void addMaterial(Material material, bool used)
+    {
+        if (material.ior == 0) material.transmission = 0; // glTF: 0 means total reflection
+        if (!material.thin && std::abs(material.ior - 1) < INDEX_OF_AIR) {
+            material.thin = true;
+            material.roughness = 0;
+            material.metallicRoughnessTexture.image = NONE;
+        }
+        if (used) noteFeatures(material);
+
+        uint32_t flags = 0;
+        if (material.doubleSided) flags |= shared::MATERIAL_DOUBLE_SIDED;
+        if (material.unlit) flags |= shared::MATERIAL_UNLIT;
+        if (material.transmission > 0) flags |= shared::MATERIAL_TRANSMISSIVE;
+        if (material.transmission > 0 && !material.thin) flags |= shared::MATERIAL_SOLID;
+        if (material.alpha == Alpha::Mask) flags |= shared::MATERIAL_MASK;
+        if (material.alpha == Alpha::Blend) flags |= shared::MATERIAL_BLEND;
+
+        const glm::vec3 emission(glm::dvec3(material.emission) * radianceScale_);
+        const glm::vec3 baseColor = glm::vec3(material.baseColor) * (material.unlit ? float(radianceScale_) : 1.0f);
+        const glm::vec3& tint = material.specularColor;
+        auto& rows = tables_.rows;
+        rows.push_back(row(baseColor.x, baseColor.y, baseColor.z, material.baseColor.w));
+        rows.push_back(row(emission.x, emission.y, emission.z, std::bit_cast<float>(flags)));
+        rows.push_back(row(material.metallic, material.roughness, material.ior, material.specular));
+        rows.push_back(row(tint.x, tint.y, tint.z, material.transmission));
+        rows.push_back(row(material.normalScale, material.alphaCutoff, 0, 0));
+        // In the order of TEXTURE_BASE_COLOR and so on; true: decoded from sRGB.
+        addUse(material.baseColorTexture, true);
+        addUse(material.metallicRoughnessTexture, false);
+        addUse(material.normalTexture, false);
+        addUse(material.emissiveTexture, true);
+        addUse(material.transmissionTexture, false);
+        addUse(material.specularTexture, false);
+        addUse(material.specularColorTexture, true);
+        CHECK_EQ(rows.size() % shared::MATERIAL_ROWS, 0u);
+    }
+
+    void addUse(const TextureUse& use, bool srgb)
+    {
+        auto& rows = tables_.rows;
+        if (use.image == NONE) {
+            rows.insert(rows.end(), shared::TEXTURE_ROWS, glm::uvec4(shared::NO_INDEX, 0, 0, 0));
+            return;
+        }
+        const Image& image = scene_.images[use.image];
+        uint32_t flags = uint32_t(use.wrapU) << shared::TEXTURE_WRAP_U_SHIFT | uint32_t(use.wrapV) << shared::TEXTURE_WRAP_V_SHIFT;
+        if (use.nearest) flags |= shared::TEXTURE_NEAREST;
+        if (use.uvSet == 1) flags |= shared::TEXTURE_SECOND_UV;
+        if (srgb) flags |= shared::TEXTURE_SRGB;
+        rows.emplace_back(firstBlock(use.image), image.width | image.height << 16, flags, 0);
+        rows.push_back(row(use.row0.x, use.row0.y, use.row0.z, 0));
+        rows.push_back(row(use.row1.x, use.row1.y, use.row1.z, 0));
+    }
+
+    // Where the image's texels start in table Texels; packs it on first use.
+    uint32_t firstBlock(uint32_t imageIndex)
+    {
+        const auto [entry, isNew] = blocks_.try_emplace(imageIndex, uint32_t(tables_.texels.size()));
+        if (!isNew) return entry->second;
+        const Image& image = scene_.images[imageIndex];
+        CHECK(image.width > 0 && image.height > 0 && image.width < 65536 && image.height < 65536);
+        const auto texel = [&](uint32_t x, uint32_t y) {
+            x = std::min(x, image.width - 1); // the odd edge of the last block is never read
+            y = std::min(y, image.height - 1);
+            const uint8_t* p = &image.rgba[4 * (size_t{y} * image.width + x)];
+            return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
+        };
+        for (uint32_t y = 0; y < image.height; y += 2)
+            for (uint32_t x = 0; x < image.width; x += 2)
+                tables_.texels.emplace_back(texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1));
+        return entry->second;
+    }
+
+    void noteFeatures(const Material& material)
+    {
+        SceneFeatures& f = tables_.features;
+        f.unlit |= material.unlit;
+        f.alpha |= material.alpha != Alpha::Opaque;
+        f.vertexColors |= !scene_.colors.empty();
+        noteTexture(material.baseColorTexture, f.baseColorTexture);
+        noteTexture(material.normalTexture, f.normalMap);
+        if (material.emission != glm::vec3(0)) noteTexture(material.emissiveTexture, f.emissiveTexture);
+        if (material.unlit) return;
+
+        const bool transmits = material.transmission > 0;
+        const bool specular = material.specular > 0 || material.metallic > 0;
+        f.transmission |= transmits;
+        f.solid |= transmits && !material.thin;
+        f.specular |= specular;
+        if (!specular && !transmits) return;
+        noteTexture(material.metallicRoughnessTexture, f.metallicRoughnessTexture);
+        noteTexture(material.specularTexture, f.specularTexture);
+        noteTexture(material.specularColorTexture, f.specularTexture);
+        if (transmits) noteTexture(material.transmissionTexture, f.transmissionTexture);
+        float low = material.roughness, high = material.roughness;
+        if (material.metallicRoughnessTexture.image != NONE) {
+            const auto [darkest, brightest] = greenRange(scene_.images[material.metallicRoughnessTexture.image]);
+            low *= darkest;
+            high *= brightest;
+        }
+        f.dirac |= low < DIRAC_ROUGHNESS;
+        f.rough |= high >= DIRAC_ROUGHNESS;
+    }
+
+    void noteTexture(const TextureUse& use, bool& feature)
+    {
+        if (use.image == NONE) return;
+        feature = true;
+        tables_.features.secondUv |= use.uvSet == 1;
+        tables_.features.textureTransform |= !isIdentity(use);
+    }
+
+    const Scene& scene_;
+    const double radianceScale_;
+    MaterialTables tables_;
+    std::map<uint32_t, uint32_t> blocks_; // image index -> first block
+};
+
+} // namespace
+
+MaterialTables makeMaterialTables(const Scene& scene, double radianceScale)
+{
+    return Builder(scene, radianceScale).build();
+}
+
+} // namespace scene

@@ -1,0 +1,19 @@
+#pragma once
+// Materials and textures as table rows, and which features they use. See shaders/shared/scene.h for the layout.
+
+#include <vector>
+
+#include "engine/scene/scene_tables.h"
+
+namespace scene
+{
+
+struct MaterialTables {
+    std::vector<glm::uvec4> rows;   // MATERIAL_ROWS each, of SceneData
+    std::vector<glm::uvec4> texels; // table Texels: 2x2 blocks of RGBA8
+    SceneFeatures features;         // of the materials that triangles use; light kinds are left false
+};
+
+MaterialTables makeMaterialTables(const Scene& scene, double radianceScale);
+
+} // namespace scene

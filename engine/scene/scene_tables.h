@@ -1,0 +1,68 @@
+#pragma once
+// A Scene as the tables that shaders read: records packed as shaders/shared/scene.h says, lengths and light scaled by powers
+// of two so that the numbers are of order 1 (undone exactly at read-back). Pure CPU work, no device.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/scene/bvh.h"
+#include "engine/scene/scene.h"
+#include "shaders/shared/scene.h"
+
+namespace scene
+{
+
+// What occurs in a scene; the rest is left out of the shaders. Fields mirror shaders/shared/variant.h.
+struct SceneFeatures {
+    bool alpha = false;
+    bool specular = false;
+    bool rough = false;
+    bool dirac = false;
+    bool transmission = false;
+    bool solid = false;
+    bool emissive = false;
+    bool punctual = false;
+    bool directional = false;
+    bool environment = false;
+    bool unlit = false;
+    bool vertexColors = false;
+    bool secondUv = false;
+    bool textureTransform = false;
+    bool baseColorTexture = false;
+    bool metallicRoughnessTexture = false;
+    bool normalMap = false;
+    bool emissiveTexture = false;
+    bool transmissionTexture = false;
+    bool specularTexture = false;
+    bool manyMaterials = false;
+};
+
+struct LightCounts {
+    uint64_t emissiveTriangles = 0;
+    uint64_t points = 0;
+    uint64_t spots = 0;
+    uint64_t directionals = 0;
+    uint64_t environments = 0;
+};
+
+struct SceneTables {
+    Bvh bvh;
+    std::vector<glm::uvec4> attributes;
+    std::vector<glm::uvec4> texels;
+    std::vector<glm::uvec4> sceneData;
+    shared::SceneUniform uniform = {};
+    SceneFeatures features;
+    LightCounts lights;
+    double lengthScale = 1;   // scaled length = length * lengthScale; a power of two
+    double radianceScale = 1; // scaled radiance = radiance * radianceScale; a power of two
+};
+
+// Throws Error when a table would exceed `maxTableBytes`.
+SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {});
+
+} // namespace scene

@@ -1,0 +1,78 @@
+#pragma once
+// Renders frames of one scene with one set of settings. encodeFrame() is the page to read first.
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "engine/gpu/gpu.h"
+#include "engine/image/image.h"
+#include "engine/scene/gpu_scene.h"
+#include "engine/scene/scene.h"
+#include "passes/settings.h"
+#include "passes/stage.h"
+#include "passes/variant.h"
+#include "shaders/shared/frame.h"
+
+namespace passes
+{
+
+// Counters and times so far.
+struct RenderStats {
+    std::map<std::string, double> stageMilliseconds; // device time per frame, by stage
+    std::map<std::string, uint64_t> rays;            // since the last reset: primary, bounce, shadow, replay, reconnection
+    std::map<std::string, uint64_t> nonFinite;       // values found not finite (and counted as 0), by stage
+    double tablesSeconds = 0;                        // scene -> tables, without the BVH
+    double bvhSeconds = 0;
+    double compileSeconds = 0;
+    scene::BvhStats bvh;
+    scene::LightCounts lights;
+    uint64_t memoryBytes = 0; // of all buffers of the device
+    uint64_t sceneBytes = 0;
+    double bytesPerPixel = 0;
+    std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
+};
+
+class Renderer
+{
+  public:
+    // What to compile in. Everything gives the same picture as Needed, slower: for tests and benchmarks.
+    enum class Features { Needed, Everything };
+
+    Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
+             const std::function<void(double)>& bvhProgress = {}, Features features = Features::Needed);
+
+    void renderFrame();                // encodes and submits one frame; keeps at most two in flight
+    uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
+    void reset();                      // forgets all frames
+    void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
+    void wait();                       // until all submitted frames are done
+
+    image::Image readColor(); // waits; linear RGB in scene units: the mean of all frames (settings.average), or the last one
+    image::Image readFrame(); // waits; the last frame alone
+    image::Image readMean();  // waits; the mean of all frames
+    RenderStats stats();      // waits
+
+  private:
+    void createStages();
+    void encodeFrame(gpu::CommandEncoder& encoder);
+    void collectTimings();
+
+    gpu::Device& device_;
+    Settings settings_;
+    double lengthScale_ = 1, radianceScale_ = 1;
+    Variant variant_;
+    RenderStats stats_;
+    shared::FrameUniform frame_ = {};
+    uint64_t frameCount_ = 0, timedFrames_ = 0;
+    std::map<std::string, double> milliseconds_; // summed over timedFrames_
+    std::deque<gpu::Submission> inFlight_;
+
+    std::unique_ptr<scene::GpuScene> scene_;
+    gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
+    std::unique_ptr<Stage> primary_, pathTrace_, accumulate_;
+};
+
+} // namespace passes

@@ -1,0 +1,83 @@
+#include "passes/variant.h"
+
+#include <type_traits>
+
+namespace passes
+{
+
+namespace
+{
+
+template <class T>
+std::string text(T value)
+{
+    if constexpr (std::is_same_v<T, bool>) return value ? "on" : "off";
+    else return std::to_string(value);
+}
+
+} // namespace
+
+Variant fullVariant(const Settings& settings, bool orthographic)
+{
+    Variant v;
+    v.MAX_BOUNCES = settings.maxBounces;
+    v.BOX_FILTER = settings.pixelFilter == PixelFilter::Box;
+    v.ORTHOGRAPHIC = orthographic;
+    return v;
+}
+
+Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic)
+{
+    Variant v = fullVariant(settings, orthographic);
+    v.HAS_ALPHA = features.alpha;
+    v.HAS_SPECULAR = features.specular;
+    v.HAS_ROUGH = features.rough;
+    v.HAS_DIRAC = features.dirac;
+    v.HAS_TRANSMISSION = features.transmission;
+    v.HAS_SOLID = features.solid;
+    v.HAS_EMISSIVE = features.emissive;
+    v.HAS_PUNCTUAL = features.punctual;
+    v.HAS_DIRECTIONAL = features.directional;
+    v.HAS_ENVIRONMENT = features.environment;
+    v.HAS_UNLIT = features.unlit;
+    v.HAS_VERTEX_COLORS = features.vertexColors;
+    v.HAS_SECOND_UV = features.secondUv;
+    v.HAS_TEXTURE_TRANSFORM = features.textureTransform;
+    v.HAS_BASE_COLOR_TEXTURE = features.baseColorTexture;
+    v.HAS_METALLIC_ROUGHNESS_TEXTURE = features.metallicRoughnessTexture;
+    v.HAS_NORMAL_MAP = features.normalMap;
+    v.HAS_EMISSIVE_TEXTURE = features.emissiveTexture;
+    v.HAS_TRANSMISSION_TEXTURE = features.transmissionTexture;
+    v.HAS_SPECULAR_TEXTURE = features.specularTexture;
+    v.HAS_MANY_MATERIALS = features.manyMaterials;
+    return v;
+}
+
+std::vector<gpu::Constant> constants(const Variant& variant)
+{
+    std::vector<gpu::Constant> list;
+#define ADD_CONSTANT(ID, TYPE, NAME, DEFAULT, WHAT) list.push_back({#NAME, uint32_t(variant.NAME)});
+    VARIANT_CONSTANTS(ADD_CONSTANT)
+#undef ADD_CONSTANT
+    return list;
+}
+
+std::map<std::string, std::string> describe(const Variant& variant)
+{
+    std::map<std::string, std::string> words;
+#define ADD_WORDS(ID, TYPE, NAME, DEFAULT, WHAT) words[#NAME] = text(variant.NAME);
+    VARIANT_CONSTANTS(ADD_WORDS)
+#undef ADD_WORDS
+    return words;
+}
+
+std::map<std::string, std::string> variantMeanings()
+{
+    std::map<std::string, std::string> words;
+#define ADD_MEANING(ID, TYPE, NAME, DEFAULT, WHAT) words[#NAME] = WHAT;
+    VARIANT_CONSTANTS(ADD_MEANING)
+#undef ADD_MEANING
+    return words;
+}
+
+} // namespace passes

@@ -1,0 +1,35 @@
+// Counter-based random numbers: a pure function of (frame, pixel, block, key), so that any number of any path can be had again.
+// pcg4d: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020.
+#ifndef SHADERS_LIB_RANDOM_GLSL
+#define SHADERS_LIB_RANDOM_GLSL
+
+uvec4 pcg4d(uvec4 v)
+{
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// Seed of a path: the frame and pixel where it was first traced.
+struct PathSeed {
+    uint frame;
+    uint pixel; // y * width + x
+};
+
+uvec4 randomBlock(PathSeed seed, uint block, uvec2 key)
+{
+    return pcg4d(uvec4(seed.frame ^ key.y, seed.pixel, block, key.x));
+}
+
+// [0, 1), never 1: 24 bits.
+float unitFloat(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8; }
+
+#endif

@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Camera rays: which surface point each pixel sees. Everything else about it is recomputed from the stored hit.
+#include "scene/camera.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = SET_PASS, binding = 0, std430) writeonly buffer Surfaces { uvec4 surfaces[]; }; // triangle, barycentrics, 0
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= frame.width || pixel.y >= frame.height) return;
+    uint index = pixel.y * frame.width + pixel.x;
+
+    uint alphaSeed;
+    Ray ray = pixelRay(pixel, alphaSeed);
+    Hit hit = closestHit(ray, alphaSeed);
+    surfaces[index] = uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u);
+    addToCounter(COUNTER_PRIMARY, 1u);
+}

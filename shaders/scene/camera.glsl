@@ -1,0 +1,34 @@
+// Camera rays, and the direction back to the camera.
+#ifndef SHADERS_SCENE_CAMERA_GLSL
+#define SHADERS_SCENE_CAMERA_GLSL
+
+#include "scene/bindings.glsl"
+#include "scene/surface.glsl" // alphaPasses, which traversal asks
+
+#include "scene/intersect.glsl"
+
+// `at` in pixels, (0, 0) is the picture's upper left corner.
+Ray cameraRay(CameraUniform camera, vec2 at)
+{
+    vec2 p = vec2(2.0, -2.0) * at / vec2(frame.width, frame.height) + vec2(-1.0, 1.0);
+    vec3 offset = p.x * camera.right.xyz + p.y * camera.up.xyz;
+    if (ORTHOGRAPHIC) return Ray(camera.position.xyz + offset, camera.forward.xyz, RAY_MAX);
+    return Ray(camera.position.xyz, normalize(camera.forward.xyz + offset), RAY_MAX);
+}
+
+// The ray of a pixel in this frame: through its center, or anywhere through it. `alphaSeed` decides about transparent surfaces.
+Ray pixelRay(uvec2 pixel, out uint alphaSeed)
+{
+    PathSeed seed = PathSeed(frame.frame, pixel.y * frame.width + pixel.x);
+    uvec4 random = randomBlock(seed, STREAM_CAMERA, uvec2(frame.key0, frame.key1));
+    alphaSeed = random.w;
+    return cameraRay(frame.camera, vec2(pixel) + (BOX_FILTER ? vec2(unitFloat(random.x), unitFloat(random.y)) : vec2(0.5)));
+}
+
+// w_o of a primary hit.
+vec3 towardsCamera(CameraUniform camera, vec3 position)
+{
+    return ORTHOGRAPHIC ? -camera.forward.xyz : normalize(camera.position.xyz - position);
+}
+
+#endif

@@ -1,0 +1,208 @@
+// Surface points: from a stored hit (triangle, barycentrics) to everything shading needs. Pure functions of the hit, so that
+// every stage that loads the same hit computes the same bits.
+#ifndef SHADERS_SCENE_SURFACE_GLSL
+#define SHADERS_SCENE_SURFACE_GLSL
+
+#include "lib/basis.glsl"
+#include "scene/texture.glsl"
+
+const bool HAS_TEXTURES = HAS_BASE_COLOR_TEXTURE || HAS_METALLIC_ROUGHNESS_TEXTURE || HAS_NORMAL_MAP || HAS_EMISSIVE_TEXTURE ||
+                          HAS_TRANSMISSION_TEXTURE || HAS_SPECULAR_TEXTURE;
+
+vec3 baryMix(vec3 a, vec3 b, vec3 c, vec2 uv)
+{
+    precise vec3 mixed = (1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c;
+    return mixed;
+}
+
+// ------------------------------------------------------------------------------------------------------------- geometry
+struct TriangleGeometry {
+    vec3 p0;
+    vec3 p1;
+    vec3 p2;
+    uint material;   // index
+    uint light;      // index, or NO_INDEX
+    vec3 areaNormal; // cross product of the edges: length is twice the area, direction is the front
+};
+
+TriangleGeometry loadTriangle(uint triangle)
+{
+    uint row = triangle * scene.attributeRows;
+    uvec4 a = FETCH(Attributes, row);
+    uvec4 b = FETCH(Attributes, row + 1u);
+    uvec4 c = FETCH(Attributes, row + 2u);
+    TriangleGeometry g;
+    g.p0 = uintBitsToFloat(a.xyz);
+    g.p1 = uintBitsToFloat(b.xyz);
+    g.p2 = uintBitsToFloat(c.xyz);
+    g.material = a.w;
+    g.light = b.w;
+    precise vec3 n = cross(g.p1 - g.p0, g.p2 - g.p0);
+    g.areaNormal = n;
+    return g;
+}
+
+vec3 hitPosition(uint triangle, vec2 barycentric)
+{
+    TriangleGeometry g = loadTriangle(triangle);
+    return baryMix(g.p0, g.p1, g.p2, barycentric);
+}
+
+// ------------------------------------------------------------------------------------------------------ what lies on it
+struct Coordinates {
+    vec2 uv0;
+    vec2 uv1;
+    uvec2 tangents; // of vertices 0 and 1, octahedral; the lowest bit is the handedness
+};
+
+Coordinates loadCoordinates(uint row, vec2 barycentric)
+{
+    Coordinates c = Coordinates(vec2(0.0), vec2(0.0), uvec2(0u));
+    vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
+    if (HAS_TEXTURES) {
+        vec4 ab = uintBitsToFloat(FETCH(Attributes, row + 4u));
+        uvec4 last = FETCH(Attributes, row + 5u);
+        c.uv0 = weights.x * ab.xy + weights.y * ab.zw + weights.z * uintBitsToFloat(last.xy);
+        c.tangents = last.zw;
+    }
+    if (HAS_TEXTURES && HAS_SECOND_UV) {
+        vec4 ab = uintBitsToFloat(FETCH(Attributes, row + 6u));
+        vec2 uvC = uintBitsToFloat(FETCH(Attributes, row + 7u).xy);
+        c.uv1 = weights.x * ab.xy + weights.y * ab.zw + weights.z * uvC;
+    }
+    return c;
+}
+
+vec4 loadVertexColor(uint row, vec2 barycentric)
+{
+    if (!HAS_VERTEX_COLORS) return vec4(1.0);
+    uvec2 a = FETCH(Attributes, row + 7u).zw;
+    uvec4 bc = FETCH(Attributes, row + 8u);
+    vec4 colorA = vec4(unpackHalf2x16(a.x), unpackHalf2x16(a.y));
+    vec4 colorB = vec4(unpackHalf2x16(bc.x), unpackHalf2x16(bc.y));
+    vec4 colorC = vec4(unpackHalf2x16(bc.z), unpackHalf2x16(bc.w));
+    return (1.0 - barycentric.x - barycentric.y) * colorA + barycentric.x * colorB + barycentric.y * colorC;
+}
+
+uint materialRow(uint material) { return scene.materialOffset + (HAS_MANY_MATERIALS ? material * MATERIAL_ROWS : 0u); }
+
+uint textureRow(uint material, uint texture) { return material + MATERIAL_HEAD_ROWS + texture * TEXTURE_ROWS; }
+
+// b of the model: base color * texture * vertex color, with alpha. `material` and `row` are rows.
+vec4 loadBaseColor(uint material, uint row, vec2 barycentric, Coordinates at)
+{
+    vec4 color = uintBitsToFloat(FETCH(SceneData, material)) * loadVertexColor(row, barycentric);
+    if (HAS_BASE_COLOR_TEXTURE) color *= sampleTexture(textureRow(material, TEXTURE_BASE_COLOR), at.uv0, at.uv1);
+    return color;
+}
+
+// Radiance emitted to the side that `front` says.
+vec3 loadEmission(uint material, Coordinates at, bool front, vec3 baseColor)
+{
+    uvec4 words = FETCH(SceneData, material + 1u);
+    vec3 emission = uintBitsToFloat(words.xyz);
+    if (HAS_EMISSIVE_TEXTURE) emission *= sampleTexture(textureRow(material, TEXTURE_EMISSIVE), at.uv0, at.uv1).rgb;
+    if (!front && (words.w & MATERIAL_DOUBLE_SIDED) == 0u) emission = vec3(0.0);
+    return HAS_UNLIT && (words.w & MATERIAL_UNLIT) != 0u ? baseColor : emission;
+}
+
+// Does the surface exist where a ray meets it? Called by traversal for triangles flagged so at build time.
+bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed)
+{
+    uint row = triangle * scene.attributeRows;
+    uint material = materialRow(FETCH(Attributes, row).w);
+    uint flags = FETCH(SceneData, material + 1u).w;
+    float alpha = loadBaseColor(material, row, barycentric, loadCoordinates(row, barycentric)).a;
+    float cutoff = uintBitsToFloat(FETCH(SceneData, material + 4u).y);
+    // Blend: independent per ray and triangle, and the same again when the path is replayed.
+    uint bits = pcg4d(uvec4(alphaSeed, triangle, 0u, 0u)).x;
+    return (flags & MATERIAL_MASK) != 0u ? alpha >= cutoff : unitFloat(bits) < alpha;
+}
+
+// ------------------------------------------------------------------------------------------------------------- surfaces
+struct Surface {
+    vec3 position;
+    vec3 geometricNormal; // n_g, on w_o's side
+    vec3 normal;          // n_s, likewise
+    vec3 baseColor;       // b
+    vec3 emission;        // radiance towards w_o
+    vec3 specularColor;
+    float specular;     // s
+    float metallic;     // m
+    float alphaG;       // roughness^2
+    float transmission; // before (1 - m)
+    float ior;
+    float eta;  // index beyond the surface over index on w_o's side, as if solid
+    uint flags; // MATERIAL_*
+    uint light; // index of the emissive triangle, or NO_INDEX
+    float area; // of the triangle, scaled
+};
+
+vec3 shadingNormal(uint material, uvec4 packed, vec2 barycentric, Coordinates at)
+{
+    vec3 normal = normalize(
+        baryMix(octahedralDecode(packed.x), octahedralDecode(packed.y), octahedralDecode(packed.z), barycentric));
+    if (!HAS_NORMAL_MAP) return normal;
+    uint use = textureRow(material, TEXTURE_NORMAL);
+    if (FETCH(SceneData, use).x == NO_INDEX) return normal;
+
+    vec3 bent = sampleTexture(use, at.uv0, at.uv1).xyz * 2.0 - 1.0;
+    bent.xy *= uintBitsToFloat(FETCH(SceneData, material + 4u).x);
+    vec3 tangent = baryMix(octahedralDecode(at.tangents.x), octahedralDecode(at.tangents.y), octahedralDecode(packed.w), barycentric);
+    float handedness = (at.tangents.x & 1u) != 0u ? -1.0 : 1.0;
+    vec3 candidate = tangent * bent.x + cross(normal, tangent) * handedness * bent.y + normal * bent.z;
+    float squared = dot(candidate, candidate);
+    return squared > 1e-12 ? candidate * inversesqrt(squared) : normal; // a map that decodes to nothing bends nothing
+}
+
+Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
+{
+    uint row = triangle * scene.attributeRows;
+    TriangleGeometry g = loadTriangle(triangle);
+    uint material = materialRow(g.material);
+    Coordinates at = loadCoordinates(row, barycentric);
+
+    Surface s;
+    s.position = baryMix(g.p0, g.p1, g.p2, barycentric);
+    s.area = 0.5 * length(g.areaNormal);
+    s.light = g.light;
+    s.flags = FETCH(SceneData, material + 1u).w;
+    vec3 frontNormal = normalize(g.areaNormal);
+    bool front = dot(wo, frontNormal) >= 0.0;
+    s.geometricNormal = front ? frontNormal : -frontNormal;
+    vec3 normal = shadingNormal(material, FETCH(Attributes, row + 3u), barycentric, at);
+    if (!front) normal = -normal;
+    s.normal = dot(normal, wo) > 0.0 ? normal : s.geometricNormal;
+    s.baseColor = loadBaseColor(material, row, barycentric, at).rgb;
+    s.emission = loadEmission(material, at, front, s.baseColor);
+
+    s.specularColor = vec3(0.0);
+    s.specular = 0.0;
+    s.metallic = 0.0;
+    s.alphaG = 1.0;
+    s.transmission = 0.0;
+    s.ior = 1.0;
+    s.eta = 1.0;
+    if (HAS_SPECULAR || HAS_TRANSMISSION) {
+        vec4 numbers = uintBitsToFloat(FETCH(SceneData, material + 2u)); // metallic, roughness, ior, specular
+        vec4 tint = uintBitsToFloat(FETCH(SceneData, material + 3u));    // specular color, transmission
+        if (HAS_METALLIC_ROUGHNESS_TEXTURE)
+            numbers.yx *= sampleTexture(textureRow(material, TEXTURE_METALLIC_ROUGHNESS), at.uv0, at.uv1).gb;
+        if (HAS_SPECULAR_TEXTURE) {
+            numbers.w *= sampleTexture(textureRow(material, TEXTURE_SPECULAR), at.uv0, at.uv1).a;
+            tint.rgb *= sampleTexture(textureRow(material, TEXTURE_SPECULAR_COLOR), at.uv0, at.uv1).rgb;
+        }
+        if (HAS_TRANSMISSION_TEXTURE)
+            tint.w *= sampleTexture(textureRow(material, TEXTURE_TRANSMISSION), at.uv0, at.uv1).r;
+        s.metallic = numbers.x;
+        s.alphaG = numbers.y * numbers.y;
+        s.ior = numbers.z;
+        s.specular = numbers.w;
+        s.specularColor = tint.rgb;
+        s.transmission = tint.w;
+        s.eta = HAS_SOLID && (s.flags & MATERIAL_SOLID) != 0u && !front ? 1.0 / numbers.z : numbers.z;
+    }
+    return s;
+}
+
+#endif

@@ -1,0 +1,67 @@
+// Material textures: RGBA8 texels in 2x2 blocks of one uvec4, fetched and filtered here (no images, no bindless).
+#ifndef SHADERS_SCENE_TEXTURE_GLSL
+#define SHADERS_SCENE_TEXTURE_GLSL
+
+#include "scene/bindings.glsl"
+
+int wrapTexel(int i, int size, uint mode)
+{
+    if (mode == 1u) return clamp(i, 0, size - 1);  // scene::Wrap::Clamp
+    int period = mode == 2u ? 2 * size : size;     // Mirror, Repeat
+    int j = i - period * int(floor(float(i) / float(period)));
+    j = j < 0 ? j + period : (j >= period ? j - period : j); // the division may round across a border
+    return j < size ? j : 2 * size - 1 - j;
+}
+
+vec3 linearFromSrgb(vec3 c)
+{
+    vec3 low = c / 12.92;
+    vec3 high = pow((c + 0.055) / 1.055, vec3(2.4));
+    return mix(high, low, lessThanEqual(c, vec3(0.04045)));
+}
+
+vec4 fetchTexel(uint firstBlock, int width, ivec2 p, bool srgb)
+{
+    uint block = firstBlock + uint((p.y >> 1) * ((width + 1) >> 1) + (p.x >> 1));
+    uvec4 quad = FETCH(Texels, block);
+    uvec2 pair = (p.y & 1) == 0 ? quad.xy : quad.zw;
+    vec4 texel = unpackUnorm4x8((p.x & 1) == 0 ? pair.x : pair.y);
+    return srgb ? vec4(linearFromSrgb(texel.rgb), texel.a) : texel;
+}
+
+// The texture that row `use` of SceneData describes, at a surface point's coordinates; white when there is none.
+vec4 sampleTexture(uint use, vec2 uv0, vec2 uv1)
+{
+    uvec4 head = FETCH(SceneData, use);
+    if (head.x == NO_INDEX) return vec4(1.0);
+    vec2 uv = HAS_SECOND_UV && (head.z & TEXTURE_SECOND_UV) != 0u ? uv1 : uv0;
+    if (HAS_TEXTURE_TRANSFORM) {
+        vec3 row0 = uintBitsToFloat(FETCH(SceneData, use + 1u).xyz);
+        vec3 row1 = uintBitsToFloat(FETCH(SceneData, use + 2u).xyz);
+        uv = vec2(dot(row0, vec3(uv, 1.0)), dot(row1, vec3(uv, 1.0)));
+    }
+    ivec2 size = ivec2(head.y & 0xffffu, head.y >> 16u);
+    uint wrapU = (head.z >> TEXTURE_WRAP_U_SHIFT) & 3u;
+    uint wrapV = (head.z >> TEXTURE_WRAP_V_SHIFT) & 3u;
+    bool srgb = (head.z & TEXTURE_SRGB) != 0u;
+    bool nearest = (head.z & TEXTURE_NEAREST) != 0u;
+
+    // Whole double tiles first (a mirrored texture repeats after two), so that large coordinates keep their fraction.
+    vec2 tile = uv - 2.0 * floor(0.5 * uv);
+    if (wrapU == 1u) tile.x = clamp(uv.x, -1.0, 2.0);
+    if (wrapV == 1u) tile.y = clamp(uv.y, -1.0, 2.0);
+    vec2 p = tile * vec2(size) - (nearest ? 0.0 : 0.5);
+    vec2 corner = floor(p);
+    vec2 f = nearest ? vec2(0.0) : p - corner;
+    int x0 = wrapTexel(int(corner.x), size.x, wrapU);
+    int y0 = wrapTexel(int(corner.y), size.y, wrapV);
+    int x1 = wrapTexel(int(corner.x) + 1, size.x, wrapU);
+    int y1 = wrapTexel(int(corner.y) + 1, size.y, wrapV);
+    vec4 t00 = fetchTexel(head.x, size.x, ivec2(x0, y0), srgb);
+    vec4 t10 = fetchTexel(head.x, size.x, ivec2(x1, y0), srgb);
+    vec4 t01 = fetchTexel(head.x, size.x, ivec2(x0, y1), srgb);
+    vec4 t11 = fetchTexel(head.x, size.x, ivec2(x1, y1), srgb);
+    return mix(mix(t00, t10, f.x), mix(t01, t11, f.x), f.y);
+}
+
+#endif

@@ -1,0 +1,32 @@
+// What a scene and the settings need: specialisation constants. What is false is not compiled. One line each:
+// X(id, type, NAME, default, "what it compiles in"). GLSL makes constants of it, C++ the fields of passes::Variant.
+#ifndef SHADERS_SHARED_VARIANT_H
+#define SHADERS_SHARED_VARIANT_H
+
+#define VARIANT_CONSTANTS(X)                                                                                           \
+    X(0, uint, MAX_BOUNCES, 5u, "scattering events on a path")                                                         \
+    X(1, bool, BOX_FILTER, false, "jittered camera rays")                                                              \
+    X(2, bool, ORTHOGRAPHIC, false, "parallel camera rays")                                                            \
+    X(3, bool, HAS_ALPHA, true, "alpha tests during traversal")                                                        \
+    X(4, bool, HAS_SPECULAR, true, "specular reflection lobes")                                                        \
+    X(5, bool, HAS_ROUGH, true, "GGX: specular lobes of finite width")                                                 \
+    X(6, bool, HAS_DIRAC, true, "perfect mirrors and clear glass")                                                     \
+    X(7, bool, HAS_TRANSMISSION, true, "transmission lobes")                                                           \
+    X(8, bool, HAS_SOLID, true, "refraction into closed bodies")                                                       \
+    X(9, bool, HAS_EMISSIVE, true, "emissive triangles")                                                               \
+    X(10, bool, HAS_PUNCTUAL, true, "point and spot lights")                                                           \
+    X(11, bool, HAS_DIRECTIONAL, true, "directional lights")                                                           \
+    X(12, bool, HAS_ENVIRONMENT, true, "environment map")                                                              \
+    X(13, bool, HAS_UNLIT, true, "unlit materials")                                                                    \
+    X(14, bool, HAS_VERTEX_COLORS, true, "vertex colors")                                                              \
+    X(15, bool, HAS_SECOND_UV, true, "second texture coordinates")                                                     \
+    X(16, bool, HAS_TEXTURE_TRANSFORM, true, "texture transforms")                                                     \
+    X(17, bool, HAS_BASE_COLOR_TEXTURE, true, "base color textures")                                                   \
+    X(18, bool, HAS_METALLIC_ROUGHNESS_TEXTURE, true, "metallic-roughness textures")                                   \
+    X(19, bool, HAS_NORMAL_MAP, true, "normal maps")                                                                   \
+    X(20, bool, HAS_EMISSIVE_TEXTURE, true, "emissive textures")                                                       \
+    X(21, bool, HAS_TRANSMISSION_TEXTURE, true, "transmission textures")                                               \
+    X(22, bool, HAS_SPECULAR_TEXTURE, true, "specular weight and color textures")                                      \
+    X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")
+
+#endif
