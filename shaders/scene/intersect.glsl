@@ -145,8 +145,8 @@ uint frontToBack(uint slots, uint signs)
 uint bitsBelow(uint bit) { return (1u << bit) - 1u; }
 
 // Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else, and
-// two triangles see their common edge with exactly opposite values (so no contraction to fused operations). t, u and v are
-// convex combinations of what the vertices have, whatever the rounding.
+// two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v are
+// convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
 bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out vec2 barycentric)
 {
     vec3 a = v0 - r.origin;
@@ -158,13 +158,13 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     precise float w0 = s.x * q.y - s.y * q.x;
     precise float w1 = p.x * s.y - p.y * s.x;
     precise float w2 = q.x * p.y - q.y * p.x;
-    precise float total = w0 + w1 + w2;
+    float total = w0 + w1 + w2;
+    vec3 normal = cross(v1 - v0, v2 - v0);
+    float slope = dot(normal, r.direction);
     bool inside = (w0 >= 0.0 && w1 >= 0.0 && w2 >= 0.0) || (w0 <= 0.0 && w1 <= 0.0 && w2 <= 0.0);
-    bool met = inside && total != 0.0;
-    float inverse = 1.0 / (met ? total : 1.0);
-    barycentric = vec2(w1, w2) * inverse;
-    float depth = dot(a, r.direction);
-    t = depth + (w1 * (dot(b, r.direction) - depth) + w2 * (dot(c, r.direction) - depth)) * inverse;
+    bool met = inside && total != 0.0 && slope != 0.0;
+    barycentric = vec2(w1, w2) / (met ? total : 1.0);
+    t = dot(normal, a) / (met ? slope : 1.0);
     return met;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "engine/scene/bvh.h"
+#include "engine/scene/gltf_loader.h"
 #include "engine/scene/procedural.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/ray_sets.h"
@@ -154,6 +155,15 @@ class IntersectAgreement : public Intersect
 };
 
 TEST_F(IntersectAgreement, WithEmbreeInTheHall) { expectAgreement(scene::makeHall(), 256); }
+
+TEST_F(IntersectAgreement, WithEmbreeInSponza)
+{
+    const std::filesystem::path file =
+        std::filesystem::path(TRICHROME_SOURCE_DIR) / "../shared/scenes/sponza/sponza_curtain_spots.gltf";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "NOT TESTED: " << file << " is missing";
+    const char* size = std::getenv("TRICHROME_TEST_RAYS"); // 512: the million rays of tests/bench/LOG.md
+    expectAgreement(scene::loadGltf(file), size ? uint32_t(std::atoi(size)) : 256u);
+}
 
 // -------------------------------------------------------------------------------------------------------------- promises
 
