@@ -1,0 +1,38 @@
+#pragma once
+// PNG and JPEG in memory to and from RGBA samples. The bytes are untrusted: no allocation beyond what they can justify.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/image/image.h"
+
+namespace image
+{
+
+constexpr uint64_t MAX_PIXELS = uint64_t{1} << 28;
+
+// RGBA samples of uint8_t or uint16_t, row 0 at the top; full scale is opaque white.
+template <class Sample>
+struct Raster {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<Sample> rgba;
+};
+
+bool isPng(std::span<const std::byte> bytes);
+bool isJpeg(std::span<const std::byte> bytes);
+
+// `metadata`, when given, receives the text chunks. Throws Error: "<what> is ..." with the decoder's reason.
+template <class Sample>
+Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr);
+
+Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& what);
+
+// 8-bit RGB, `rgb` holds 3 * width * height samples.
+std::vector<std::byte> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgb,
+                                 const Metadata& metadata);
+
+} // namespace image

@@ -1,0 +1,36 @@
+#pragma once
+// A glTF file opened: its checked structure as tinygltf types, and the bytes of its buffers.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/scene/tinygltf.h"
+#include "engine/scene/warnings.h"
+
+namespace scene::gltf
+{
+
+// An image as the file gives it, not yet read.
+struct ImageSource {
+    std::string name;
+    std::string uri;     // else
+    int bufferView = -1; // from a buffer
+};
+
+struct Document {
+    std::filesystem::path folder;
+    tinygltf::Model model; // buffers and images of the model are empty: the two vectors below replace them
+    std::vector<std::vector<std::byte>> buffers;
+    std::vector<ImageSource> images;
+
+    std::span<const std::byte> view(int bufferView) const; // all bytes of a buffer view
+};
+
+// Reads .gltf or .glb (told apart by the first bytes), checks it (gltf_json_checks.h) and reads all buffers. Throws
+// Error.
+Document openDocument(const std::filesystem::path& file, Warnings& warnings);
+
+} // namespace scene::gltf

@@ -1,0 +1,217 @@
+#include "engine/scene/gltf_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/base/error.h"
+#include "engine/scene/gltf_mesh_part.h"
+#include "engine/scene/gltf_values.h"
+
+namespace scene::gltf
+{
+
+namespace
+{
+
+constexpr uint64_t MAX_GEOMETRY_BYTES = uint64_t{1} << 31; // instances multiply what a small file can ask for
+constexpr double LARGEST_SCENE = 1e9;   // metres; products of lengths as traversal forms them stay inside float32
+constexpr double SMALLEST_AREA = 1e-19; // twice the area, m^2; below, the square of the normal underflows in float32
+
+const Accessor* instanceAccessor(MeshPartReader& reader, const tinygltf::Node& node, const char* name)
+{
+    const tinygltf::Value* instancing = findExtension(node.extensions, "EXT_mesh_gpu_instancing");
+    if (!instancing || !instancing->Get("attributes").Has(name)) return nullptr;
+    return &reader.accessor(instancing->Get("attributes").Get(name).GetNumberAsInt());
+}
+
+// EXT_mesh_gpu_instancing: translation, rotation and scale of each instance inside the node; else the node itself.
+std::vector<glm::dmat4> instancesOf(MeshPartReader& reader, const tinygltf::Node& node, Warnings& warnings)
+{
+    const Accessor* translations = instanceAccessor(reader, node, "TRANSLATION");
+    const Accessor* rotations = instanceAccessor(reader, node, "ROTATION");
+    const Accessor* scales = instanceAccessor(reader, node, "SCALE");
+    const Accessor* any = translations ? translations : rotations ? rotations : scales;
+    if (!any) return {glm::dmat4(1)};
+    std::vector<glm::dmat4> instances(any->count(), glm::dmat4(1));
+    for (size_t i = 0; i < instances.size(); ++i) {
+        if (translations) instances[i] = glm::translate(instances[i], translations->vec3(i));
+        if (rotations) {
+            const glm::dquat rotation(rotations->number(i, 3), rotations->number(i, 0), rotations->number(i, 1),
+                                      rotations->number(i, 2));
+            const double length = std::sqrt(glm::dot(rotation, rotation));
+            if (length > 0)
+                instances[i] *= glm::mat4_cast(rotation / length);
+            else
+                warnings.add("Ignored the rotation of an instance, which is zero.");
+        }
+        if (scales) instances[i] = glm::scale(instances[i], scales->vec3(i));
+    }
+    return instances;
+}
+
+size_t instanceCount(MeshPartReader& reader, const tinygltf::Node& node)
+{
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {
+        if (const Accessor* accessor = instanceAccessor(reader, node, name)) return accessor->count();
+    }
+    return 1;
+}
+
+bool isDrawable(const Document& document, const tinygltf::Primitive& primitive)
+{
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end() || primitive.mode < TINYGLTF_MODE_TRIANGLES) return false;
+    const tinygltf::Accessor& accessor = document.model.accessors[static_cast<size_t>(position->second)];
+    return accessor.bufferView >= 0 || accessor.sparse.isSparse; // else all vertices coincide
+}
+
+// An upper bound, before anything is allocated.
+void checkSize(const Document& document, const NodeTree& tree, MeshPartReader& reader)
+{
+    constexpr uint64_t VERTEX_BYTES =
+        sizeof(glm::dvec3) + 2 * sizeof(glm::vec3) + 2 * sizeof(glm::vec4) + 2 * sizeof(glm::vec2);
+    const auto bytesOf = [&](const tinygltf::Mesh& mesh) {
+        uint64_t bytes = 0;
+        for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            if (!isDrawable(document, primitive)) continue;
+            const uint64_t elements =
+                document.model.accessors[static_cast<size_t>(primitive.attributes.at("POSITION"))].count;
+            const uint64_t corners = primitive.indices < 0
+                                         ? elements
+                                         : document.model.accessors[static_cast<size_t>(primitive.indices)].count;
+            const uint64_t triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
+            const bool flat = !primitive.attributes.contains("NORMAL");
+            bytes += triangles * sizeof(Triangle) +
+                     (flat ? 3 * triangles : std::min(elements, 3 * triangles)) * VERTEX_BYTES;
+        }
+        return bytes;
+    };
+    std::vector<uint64_t> meshBytes;
+    for (const tinygltf::Mesh& mesh : document.model.meshes) meshBytes.push_back(bytesOf(mesh));
+    double bytes = 0; // no overflow, and exact far beyond the limit
+    for (const uint32_t i : tree.visible) {
+        const tinygltf::Node& node = document.model.nodes[i];
+        if (node.mesh >= 0)
+            bytes += static_cast<double>(meshBytes[static_cast<size_t>(node.mesh)]) *
+                     static_cast<double>(instanceCount(reader, node));
+    }
+    if (bytes > static_cast<double>(MAX_GEOMETRY_BYTES))
+        throw Error("The meshes with all their instances need {:.0f} bytes, more than the limit of {}.", bytes,
+                    MAX_GEOMETRY_BYTES);
+}
+
+std::vector<glm::dmat4> skinMatrices(const Document& document, const NodeTree& tree, MeshPartReader& reader,
+                                     int skinIndex)
+{
+    const tinygltf::Skin& skin = document.model.skins[static_cast<size_t>(skinIndex)];
+    std::vector<glm::dmat4> matrices;
+    for (size_t i = 0; i < skin.joints.size(); ++i) {
+        const glm::dmat4& world = tree.worldFromNode[static_cast<size_t>(skin.joints[i])];
+        matrices.push_back(skin.inverseBindMatrices < 0 ? world
+                                                        : world * reader.accessor(skin.inverseBindMatrices).mat4(i));
+    }
+    return matrices;
+}
+
+// Arrays of which some parts have nothing: filled up when the first part has something.
+template <class T, class Get>
+void append(std::vector<T>& array, size_t before, const MeshPart& part, bool has, const T& absent, Get&& get)
+{
+    if (!has && array.empty()) return;
+    array.resize(before, absent);
+    for (const Vertex& vertex : part.vertices) array.push_back(has ? T(get(vertex)) : absent);
+}
+
+void append(Scene& scene, std::vector<glm::dvec3>& positions, const MeshPart& part, uint32_t material)
+{
+    const size_t before = positions.size();
+    for (const Vertex& vertex : part.vertices) {
+        positions.push_back(vertex.position);
+        scene.normals.emplace_back(vertex.normal);
+    }
+    append(scene.tangents, before, part, part.hasTangents, glm::vec4(1, 0, 0, 1),
+           [](const Vertex& v) { return v.tangent; });
+    append(scene.uv0, before, part, part.hasUv[0], glm::vec2(0), [](const Vertex& v) { return v.uv[0]; });
+    append(scene.uv1, before, part, part.hasUv[1], glm::vec2(0), [](const Vertex& v) { return v.uv[1]; });
+    append(scene.colors, before, part, part.hasColors, glm::vec4(1), [](const Vertex& v) { return v.color; });
+    const auto first = static_cast<uint32_t>(before);
+    for (const auto& [a, b, c] : part.triangles)
+        scene.triangles.push_back({{first + a, first + b, first + c}, material});
+}
+
+// Moves the box's centre to the origin and rounds to float32; what has no area then is dropped.
+void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Warnings& warnings)
+{
+    constexpr double INF = std::numeric_limits<double>::infinity();
+    glm::dvec3 low(INF), high(-INF);
+    for (const Triangle& triangle : scene.triangles) {
+        for (const uint32_t v : triangle.vertices) {
+            low = glm::min(low, positions[v]);
+            high = glm::max(high, positions[v]);
+        }
+    }
+    if (!scene.triangles.empty()) {
+        const glm::dvec3 size = high - low;
+        const double largest = std::max({size.x, size.y, size.z});
+        if (!(largest <= LARGEST_SCENE))
+            throw Error("The scene is {} m across, more than the limit of {} m.", largest, LARGEST_SCENE);
+        scene.origin = 0.5 * low + 0.5 * high;
+    }
+    scene.positions.reserve(positions.size());
+    for (const glm::dvec3& position : positions) {
+        const bool used = glm::all(glm::lessThanEqual(low, position)) && glm::all(glm::lessThanEqual(position, high));
+        scene.positions.push_back(used ? glm::vec3(position - scene.origin)
+                                       : glm::vec3(0)); // of dropped triangles only
+    }
+    const size_t dropped = std::erase_if(scene.triangles, [&](const Triangle& triangle) {
+        const glm::dvec3 a = scene.positions[triangle.vertices[0]];
+        const glm::dvec3 b = scene.positions[triangle.vertices[1]];
+        const glm::dvec3 c = scene.positions[triangle.vertices[2]];
+        return !(glm::length(glm::cross(b - a, c - a)) >= SMALLEST_AREA);
+    });
+    if (dropped > 0) warnings.add("Dropped a triangle without area.", dropped);
+}
+
+} // namespace
+
+void readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Warnings& warnings,
+                  const std::function<void(double)>& progress)
+{
+    const tinygltf::Model& model = document.model;
+    MeshPartReader reader(document, warnings);
+    checkSize(document, tree, reader);
+
+    std::vector<glm::dvec3> positions;
+    for (size_t n = 0; n < tree.visible.size(); ++n) {
+        if (progress && n % 64 == 0) progress(static_cast<double>(n) / static_cast<double>(tree.visible.size()));
+        const uint32_t nodeIndex = tree.visible[n];
+        const tinygltf::Node& node = model.nodes[nodeIndex];
+        if (node.mesh < 0) continue;
+        const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
+        Placement placement;
+        placement.morphWeights = node.weights.empty() ? &mesh.weights : &node.weights;
+        if (node.skin >= 0) placement.worldFromSkin = skinMatrices(document, tree, reader, node.skin);
+        for (const glm::dmat4& instance : instancesOf(reader, node, warnings)) {
+            placement.worldFromMesh = tree.worldFromNode[nodeIndex] * instance;
+            for (size_t i = 0; i < mesh.primitives.size(); ++i) {
+                const tinygltf::Primitive& primitive = mesh.primitives[i];
+                const std::string where = fmt::format("meshes[{}].primitives[{}]", node.mesh, i);
+                if (!isDrawable(document, primitive)) {
+                    warnings.add(fmt::format("Ignored {}: it has no positions, or only points or lines.", where));
+                    continue;
+                }
+                const size_t material =
+                    primitive.material < 0 ? scene.materials.size() - 1 : static_cast<size_t>(primitive.material);
+                append(scene, positions, reader.read(primitive, where, placement, scene.materials[material]),
+                       static_cast<uint32_t>(material));
+            }
+        }
+    }
+    settle(scene, positions, warnings);
+}
+
+} // namespace scene::gltf

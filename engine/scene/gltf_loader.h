@@ -1,0 +1,23 @@
+#pragma once
+// glTF 2.0 (.gltf, .glb) to Scene. Files are untrusted: whatever they hold, the result is a sane scene or an Error.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "engine/scene/scene.h"
+
+namespace scene
+{
+
+struct LoadOptions {
+    std::function<void(const std::string& what, double fraction)>
+        progress; // may be empty; called on the caller's thread
+};
+
+// The file's default scene, in its default pose. Throws Error: one sentence naming the file, the object and the value.
+// Afterwards: finite vertices, unit normals, at least one camera, and light or emission (chosen by us when the file has
+// none; Scene::warnings says so).
+Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options = {});
+
+} // namespace scene

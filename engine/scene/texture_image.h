@@ -1,0 +1,17 @@
+#pragma once
+// Decodes the pictures of materials: PNG or JPEG, told apart by their first bytes.
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "engine/scene/scene.h"
+
+namespace scene
+{
+
+// Any bit depth and channel count becomes 8-bit RGBA. Throws Error: other format, malformed, cut short, more than 2^28
+// pixels, or larger than `bytes` could hold. `name` is for messages and becomes Image::name.
+Image decodeTexture(std::span<const std::byte> bytes, const std::string& name);
+
+} // namespace scene
