@@ -1,10 +1,13 @@
 // Traversal on the device against Embree's own, and what it promises about ties, alpha, limits and odd rays.
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <random>
 
 #include <fmt/core.h>
@@ -106,6 +109,24 @@ Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RT
     return std::abs(nearer.inside) <= EDGE ? Reason::Edge : Reason::None;
 }
 
+// For each triangle the lowest index of its copies: Sponza has some hundreds, and Embree reports any of them.
+std::vector<uint32_t> firstCopies(const Mesh& mesh)
+{
+    using Key = std::array<float, 9>;
+    std::map<Key, uint32_t> firstOf;
+    std::vector<uint32_t> first;
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        std::array<std::array<float, 3>, 3> corners;
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::vec3 p = mesh.positions[mesh.triangles[i].vertices[k]];
+            corners[k] = {p.x, p.y, p.z};
+        }
+        std::sort(corners.begin(), corners.end());
+        first.push_back(firstOf.emplace(std::bit_cast<Key>(corners), i).first->second);
+    }
+    return first;
+}
+
 class IntersectAgreement : public Intersect
 {
   protected:
@@ -119,6 +140,7 @@ class IntersectAgreement : public Intersect
         rays.insert(rays.end(), sets.shadow2.begin(), sets.shadow2.end());
         rays.insert(rays.end(), sets.bounce2.begin(), sets.bounce2.end());
         const std::vector<Hit> hits = trace(mesh, rays);
+        const std::vector<uint32_t> firstCopy = firstCopies(mesh);
         float magnitude = 0;
         for (const glm::vec3& p : scene.positions)
             magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -127,7 +149,8 @@ class IntersectAgreement : public Intersect
         for (size_t i = 0; i < rays.size(); ++i) {
             const RTCRayHit theirs = embree.intersect(rays[i]);
             occlusionDiffers += hits[i].occluded() != hits[i].isHit() ? 1 : 0;
-            const uint32_t primitive = theirs.hit.primID & 0x7fffffffu;
+            const bool theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
+            const uint32_t primitive = theyHit ? firstCopy[theirs.hit.primID] : NO_HIT;
             hitCount += primitive != NO_HIT ? 1 : 0;
             if (primitive == hits[i].triangle()) {
                 if (primitive == NO_HIT) continue;
