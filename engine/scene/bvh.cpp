@@ -18,9 +18,11 @@
 #include "engine/scene/bvh_tree.h"
 #include "shaders/shared/bvh.h"
 
-namespace scene {
+namespace scene
+{
 
-namespace {
+namespace
+{
 
 // Coordinates beyond this count as non-finite: Embree drops them, and areas would overflow.
 constexpr float LARGEST_COORDINATE = 1e18f;
@@ -210,7 +212,8 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     const auto fits = [&](const WideTree& tree) {
         return std::max(tree.nodes.size() * shared::BVH_NODE_STRIDE,
                         tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE) *
-                   sizeof(glm::uvec4) <= maxTableBytes;
+                   sizeof(glm::uvec4) <=
+               maxTableBytes;
     };
     WideTree tree = collapse(buildBinaryTree(input, primitives, true));
     if (!fits(tree)) tree = collapse(buildBinaryTree(input, primitives, false));

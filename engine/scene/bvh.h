@@ -11,7 +11,8 @@
 
 #include "engine/scene/scene.h"
 
-namespace scene {
+namespace scene
+{
 
 struct BvhStats {
     uint64_t nodes = 0;

@@ -6,14 +6,17 @@
 #include "engine/base/check.h"
 #include "shaders/shared/bvh.h"
 
-namespace scene {
+namespace scene
+{
 
-namespace {
+namespace
+{
 
 // What is best for one binary node: cost[i-1] of its triangles when it may become at most i roots of wide subtrees.
 struct Plan {
     std::array<float, BVH_WIDTH - 1> cost = {};
-    std::array<uint8_t, BVH_WIDTH - 1> left = {}; // [i-2]: of i roots, those left of the split; 0: i-1 roots are as good
+    std::array<uint8_t, BVH_WIDTH - 1> left =
+        {}; // [i-2]: of i roots, those left of the split; 0: i-1 roots are as good
     uint32_t triangles = 1;
     uint32_t height = 0;
     bool leaf = true; // as one root: a leaf
@@ -131,8 +134,8 @@ class Collapser
         }
     }
 
-    // Which slot each root takes, so that ascending (slot xor signs of the direction) is roughly front to back: greedily
-    // the pair of root and slot's diagonal that agree best (Section 3.2).
+    // Which slot each root takes, so that ascending (slot xor signs of the direction) is roughly front to back:
+    // greedily the pair of root and slot's diagonal that agree best (Section 3.2).
     std::array<uint32_t, BVH_WIDTH> slotsOf(const Roots& roots, glm::vec3 center) const
     {
         std::array<uint32_t, BVH_WIDTH> slots;
@@ -215,7 +218,10 @@ class Collapser
 
 } // namespace
 
-WideTree collapse(const BinaryTree& tree) { return Collapser(tree).run(); }
+WideTree collapse(const BinaryTree& tree)
+{
+    return Collapser(tree).run();
+}
 
 double sahCost(const WideTree& tree)
 {

@@ -7,14 +7,16 @@
 #include "engine/base/check.h"
 #include "shaders/shared/bvh.h"
 
-namespace scene {
+namespace scene
+{
 
-namespace {
+namespace
+{
 
-// Boxes grow by this part of the scene's largest coordinate: more than what rounding in the traversal's slab test can lose.
-// With the ray's origin within 5 R of every plane, the errors of the plane's distance (subtraction, product with the
-// inverse direction of 2.5 ulp, byte times step, sum), seen as a shift of the plane, sum to under 32 * 2^-24 R. It also
-// covers the triangle's own error in t, so that a triangle is never nearer than its box.
+// Boxes grow by this part of the scene's largest coordinate: more than what rounding in the traversal's slab test can
+// lose. With the ray's origin within 5 R of every plane, the errors of the plane's distance (subtraction, product with
+// the inverse direction of 2.5 ulp, byte times step, sum), seen as a shift of the plane, sum to under 32 * 2^-24 R. It
+// also covers the triangle's own error in t, so that a triangle is never nearer than its box.
 constexpr double BOX_MARGIN = 0x1p-19;
 
 struct Grid {
@@ -27,8 +29,7 @@ Grid fitGrid(double lower, double upper)
 {
     Grid grid;
     grid.corner = float(lower);
-    if (double(grid.corner) > lower)
-        grid.corner = std::nextafter(grid.corner, -std::numeric_limits<float>::infinity());
+    if (double(grid.corner) > lower) grid.corner = std::nextafter(grid.corner, -std::numeric_limits<float>::infinity());
     int exponent = 0;
     std::frexp((upper - double(grid.corner)) / 255.0, &exponent); // 2^exponent exceeds the quotient
     grid.exponent = std::max(exponent + 127, 1);
@@ -115,8 +116,8 @@ std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& in
         for (int corner = 0; corner < 3; ++corner) {
             const glm::vec3 v = input.positions[input.triangles[index].vertices[size_t(corner)]];
             const uint32_t tag = corner == 0 ? index | (alpha ? shared::BVH_ALPHA_FLAG : 0u) : 0u;
-            table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y),
-                               std::bit_cast<uint32_t>(v.z), tag);
+            table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z),
+                               tag);
         }
     }
     return table;

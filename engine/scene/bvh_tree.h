@@ -11,11 +11,13 @@
 
 #include "engine/scene/bvh.h"
 
-namespace scene {
+namespace scene
+{
 
 constexpr uint32_t BVH_WIDTH = 8;
 constexpr uint32_t BVH_LEAF_TRIANGLES = 3;
-constexpr uint32_t BVH_MAX_BINARY_DEPTH = 3 * 31; // collapsing by height takes three levels at once: fits BVH_STACK_SIZE
+constexpr uint32_t BVH_MAX_BINARY_DEPTH =
+    3 * 31; // collapsing by height takes three levels at once: fits BVH_STACK_SIZE
 constexpr float BVH_NODE_COST = 1.0f;
 constexpr float BVH_TRIANGLE_COST = 0.4f; // measured on lavapipe, tests/bench/LOG.md
 
@@ -63,7 +65,8 @@ struct WideTree {
     uint32_t levels = 0;
 };
 
-// Ylitie et al. 2017, Section 3.1: the set of binary nodes that gives the cheapest wide tree by the surface area heuristic.
+// Ylitie et al. 2017, Section 3.1: the set of binary nodes that gives the cheapest wide tree by the surface area
+// heuristic.
 WideTree collapse(const BinaryTree& tree);
 
 // Expected cost of a ray through the root's box.

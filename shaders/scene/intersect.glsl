@@ -3,8 +3,9 @@
 // The includer declares the tables Nodes and Triangles, the constant bool HAS_ALPHA and
 // bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of flagged triangles only.
 //
-// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at least
-// once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the ray's signs.
+// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
+// least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
+// ray's signs.
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
@@ -28,7 +29,7 @@ struct Hit {
 
 // A ray made ready for the tree.
 struct TraversalRay {
-    vec3 origin; // of the advanced ray
+    vec3 origin;   // of the advanced ray
     float advance; // distance from Ray::origin to it
     vec3 direction;
     vec3 inverse; // of the direction, finite
@@ -84,7 +85,10 @@ TraversalRay prepare(Ray ray)
     return r;
 }
 
-float byteAt(uint word, int index) { return float(int((word >> (8 * index)) & 255u)); }
+float byteAt(uint word, int index)
+{
+    return float(int((word >> (8 * index)) & 255u));
+}
 
 // `bits` where the ray within [tMin, tMax] meets slot `i` of the four whose planes are packed in the words; else 0.
 uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin, float tMax, uint bits)
@@ -104,7 +108,10 @@ uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin,
     return enter <= leave ? bits : 0u;
 }
 
-uint slotBits(uint slot) { return (7u << (3u * slot)) | (1u << (24u + slot)); }
+uint slotBits(uint slot)
+{
+    return (7u << (3u * slot)) | (1u << (24u + slot));
+}
 
 // The children that the ray meets, as the node's masks with the others' bits cleared.
 uint meetChildren(TraversalRay r, float tMax, uvec4 grid, uint masks, uvec4 a, uvec4 b, uvec4 c)
@@ -142,11 +149,14 @@ uint frontToBack(uint slots, uint signs)
     return (signs & 4u) != 0u ? z : slots;
 }
 
-uint bitsBelow(uint bit) { return (1u << bit) - 1u; }
+uint bitsBelow(uint bit)
+{
+    return (1u << bit) - 1u;
+}
 
-// Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else, and
-// two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v are
-// convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
+// Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else,
+// and two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v
+// are convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
 bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out vec2 barycentric)
 {
     vec3 a = v0 - r.origin;
@@ -168,7 +178,8 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     return met;
 }
 
-// Depth-first; a group is the rest of one node's child nodes: bits 0..7 those to visit, front to back; 8..15 all that are.
+// Depth-first; a group is the rest of one node's child nodes: bits 0..7 those to visit, front to back; 8..15 all that
+// are.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
 {
     uint stackBase[BVH_STACK_SIZE];
@@ -189,8 +200,8 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
         depth += (group & 255u) != 0u ? 1u : 0u;
 
         uvec4 links = FETCH(Nodes, node + 1u);
-        uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u), FETCH(Nodes, node + 3u),
-                                 FETCH(Nodes, node + 4u));
+        uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
+                                 FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
         base = links.y;
         group = frontToBack(hits >> 24, r.signs) | ((links.x >> 16) & 0xff00u);
 
@@ -228,13 +239,19 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
 }
 
 // The nearest triangle before tMax; of several at the same t the one of the lowest index.
-Hit closestHit(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, false); }
+Hit closestHit(Ray ray, uint alphaSeed)
+{
+    return traverse(ray, alphaSeed, false);
+}
 
 // Is there any triangle before tMax?
-bool occluded(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, true).triangle != NO_HIT; }
+bool occluded(Ray ray, uint alphaSeed)
+{
+    return traverse(ray, alphaSeed, true).triangle != NO_HIT;
+}
 
-// Where a ray that leaves a surface point starts: off the surface, on the side of `direction`, by more than rounding can
-// have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices, or a bound of it.
+// Where a ray that leaves a surface point starts: off the surface, on the side of `direction`, by more than rounding
+// can have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices, or a bound of it.
 vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction, float magnitude)
 {
     float side = dot(geometricNormal, direction) < 0.0 ? -1.0 : 1.0;

@@ -19,8 +19,8 @@ EmbreeScene::EmbreeScene(const std::vector<glm::vec3>& positions, const std::vec
     auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                      sizeof(glm::vec3), positions.size()));
     std::copy(positions.begin(), positions.end(), vertices);
-    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangles.size()));
+    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(uint32_t), triangles.size()));
     for (const scene::Triangle& triangle : triangles)
         indices = std::copy(triangle.vertices.begin(), triangle.vertices.end(), indices);
     rtcCommitGeometry(mesh);
@@ -104,8 +104,7 @@ RaySets makeRaySets(const scene::Scene& scene, const EmbreeScene& embree, uint32
         return TestRay{vertex.position + offset * vertex.normal, FAR, glm::normalize(direction)};
     };
     const auto shadowFrom = [&](const Vertex& vertex) {
-        const glm::vec3 target =
-            lower + (upper - lower) * glm::vec3(uniform(engine), uniform(engine), uniform(engine));
+        const glm::vec3 target = lower + (upper - lower) * glm::vec3(uniform(engine), uniform(engine), uniform(engine));
         const glm::vec3 origin = vertex.position + offset * vertex.normal;
         return TestRay{origin, glm::length(target - origin), glm::normalize(target - origin)};
     };

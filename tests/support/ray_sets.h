@@ -1,5 +1,6 @@
 #pragma once
-// Rays as a path tracer makes them, traced by Embree: the oracle of traversal tests and the opponent of traversal_bench.
+// Rays as a path tracer makes them, traced by Embree: the oracle of traversal tests and the opponent of
+// traversal_bench.
 
 #include <cstdint>
 #include <memory>
@@ -43,5 +44,6 @@ struct RaySets {
     std::vector<TestRay> shadow2; // from the hits of `bounce` to random points of the scene's box
 };
 
-// size x size camera rays, size a power of two; the other sets have as many rays less those whose path has left the scene.
+// size x size camera rays, size a power of two; the other sets have as many rays less those whose path has left the
+// scene.
 RaySets makeRaySets(const scene::Scene& scene, const EmbreeScene& embree, uint32_t size);

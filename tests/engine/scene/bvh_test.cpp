@@ -14,7 +14,8 @@
 #include "engine/scene/bvh_tree.h"
 #include "shaders/shared/bvh.h"
 
-namespace {
+namespace
+{
 
 using scene::Box;
 using scene::Bvh;
@@ -120,7 +121,8 @@ bool contains(const Box& box, glm::dvec3 p)
 std::multiset<uint32_t> reachable(const Bvh& bvh)
 {
     std::multiset<uint32_t> found;
-    walk(bvh, [](const Box&) { return true; }, [&](uint32_t triangle) { found.insert(triangle); });
+    walk(
+        bvh, [](const Box&) { return true; }, [&](uint32_t triangle) { found.insert(triangle); });
     return found;
 }
 
@@ -160,7 +162,8 @@ TEST(Bvh, ReachesEveryTriangleAndEveryNodeOnce)
         EXPECT_EQ(*found.rbegin(), count - 1);
 
         uint64_t nodes = 1;
-        walk(bvh, [&](const Box&) { return true; }, [](uint32_t) {});
+        walk(
+            bvh, [&](const Box&) { return true; }, [](uint32_t) {});
         std::vector<uint32_t> pending = {0};
         std::set<uint32_t> seen = {0};
         while (!pending.empty()) {
@@ -178,7 +181,8 @@ TEST(Bvh, ReachesEveryTriangleAndEveryNodeOnce)
     }
 }
 
-// Spatial splits cut triangles: each of a triangle's points must lie in some leaf that names it, ancestors' boxes included.
+// Spatial splits cut triangles: each of a triangle's points must lie in some leaf that names it, ancestors' boxes
+// included.
 TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
 {
     const Mesh mesh = soup(5000, 7);
@@ -194,8 +198,9 @@ TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
             if (sample == 1) b = 1 - a;
             const glm::dvec3 point = (1 - a - b) * v[0] + a * v[1] + b * v[2];
             bool found = false;
-            walk(bvh, [&](const Box& box) { return contains(box, point); },
-                 [&](uint32_t candidate) { found |= candidate == triangle; });
+            walk(
+                bvh, [&](const Box& box) { return contains(box, point); },
+                [&](uint32_t candidate) { found |= candidate == triangle; });
             ASSERT_TRUE(found) << "triangle " << triangle;
         }
     }
@@ -213,8 +218,9 @@ TEST(Bvh, FindsTheNearestHitThatBruteForceFinds)
         for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
             expected = std::min(expected, hitDistance(mesh.corners(t), ray));
         double found = std::numeric_limits<double>::infinity();
-        walk(bvh, [&](const Box& box) { return meets(box, ray); },
-             [&](uint32_t t) { found = std::min(found, hitDistance(mesh.corners(t), ray)); });
+        walk(
+            bvh, [&](const Box& box) { return meets(box, ray); },
+            [&](uint32_t t) { found = std::min(found, hitDistance(mesh.corners(t), ray)); });
         ASSERT_EQ(found, expected);
         hits += std::isfinite(found) ? 1 : 0;
     }
@@ -226,13 +232,13 @@ TEST(Bvh, LeavesOutDegenerateAndNonFiniteTriangles)
     constexpr float INFINITE = std::numeric_limits<float>::infinity();
     constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
     Mesh mesh;
-    mesh.add({0, 0, 0}, {0, 0, 0}, {1, 0, 0});                // two corners equal
-    mesh.add({0, 0, 0}, {1, 1, 1}, {2, 2, 2});                // on a line
+    mesh.add({0, 0, 0}, {0, 0, 0}, {1, 0, 0}); // two corners equal
+    mesh.add({0, 0, 0}, {1, 1, 1}, {2, 2, 2}); // on a line
     mesh.add({0, 0, 0}, {1, 0, 0}, {0, NOT_A_NUMBER, 0});
     mesh.add({0, 0, 0}, {1, 0, 0}, {0, INFINITE, 0});
-    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 3e38f, 0});            // its area is not finite
-    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});                // good
-    mesh.add({0, 0, 0}, {1e-12f, 0, 0}, {0, 1e-12f, 0});      // small, good
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 3e38f, 0});       // its area is not finite
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});           // good
+    mesh.add({0, 0, 0}, {1e-12f, 0, 0}, {0, 1e-12f, 0}); // small, good
     const Bvh bvh = mesh.build();
     EXPECT_EQ(reachable(bvh), (std::multiset<uint32_t>{5, 6}));
     EXPECT_EQ(bvh.stats.skippedTriangles, 5u);
@@ -252,8 +258,8 @@ TEST(Bvh, MarksTrianglesThatNeedAnAlphaTest)
     const Mesh mesh = soup(100, 5);
     std::vector<uint8_t> flags(100);
     for (size_t i = 0; i < flags.size(); i += 3) flags[i] = 1;
-    const Bvh bvh = scene::buildBvh(
-        {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = flags}, ANY_SIZE);
+    const Bvh bvh =
+        scene::buildBvh({.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = flags}, ANY_SIZE);
     for (size_t record = 0; record < bvh.stats.triangleRecords; ++record) {
         const uint32_t tag = bvh.triangles[record * shared::BVH_TRIANGLE_STRIDE].w;
         EXPECT_EQ((tag & shared::BVH_ALPHA_FLAG) != 0, flags[tag & ~shared::BVH_ALPHA_FLAG] != 0);
@@ -282,8 +288,8 @@ TEST(Bvh, OfAGeometricSeriesFitsTheStack)
     EXPECT_LE(bvh.stats.depth, shared::BVH_STACK_SIZE);
 }
 
-// A spine whose every node also carries a bush of boxes larger than the rest of the spine: opening the bush pays more than
-// going down the spine, so that the cheapest wide tree is as deep as the spine.
+// A spine whose every node also carries a bush of boxes larger than the rest of the spine: opening the bush pays more
+// than going down the spine, so that the cheapest wide tree is as deep as the spine.
 TEST(BvhCollapse, BoundsTheDepthOfADegenerateTree)
 {
     constexpr uint32_t BUSH_LEVELS = 7;

@@ -51,10 +51,9 @@ class Intersect : public GpuTest
   protected:
     std::vector<Hit> trace(const Mesh& mesh, const std::vector<TestRay>& rays)
     {
-        const scene::Bvh bvh = scene::buildBvh({.positions = mesh.positions,
-                                                .triangles = mesh.triangles,
-                                                .needsAlphaTest = mesh.needsAlphaTest},
-                                               device().limits().tableBytes);
+        const scene::Bvh bvh = scene::buildBvh(
+            {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = mesh.needsAlphaTest},
+            device().limits().tableBytes);
         const gpu::Buffer nodes = upload("nodes", bvh.nodes, gpu::Usage::Table);
         const gpu::Buffer triangles = upload("triangles", bvh.triangles, gpu::Usage::Table);
         const gpu::Buffer rayBuffer = upload("rays", rays);
@@ -74,9 +73,11 @@ class Intersect : public GpuTest
     }
 };
 
-// ------------------------------------------------------------------------------------------------- agreement with Embree
+// ------------------------------------------------------------------------------------------------- agreement with
+// Embree
 
-// One triangle met by one ray in float64: t, and how far inside it the ray passes (smallest barycentric, negative outside).
+// One triangle met by one ray in float64: t, and how far inside it the ray passes (smallest barycentric, negative
+// outside).
 struct Exact {
     double t = 0;
     double inside = 0;
@@ -102,7 +103,8 @@ Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RT
     constexpr double EDGE = 1e-4; // in barycentrics
     const bool weHit = ours.isHit(), theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
     const Exact our = weHit ? meet(mesh, ours.triangle(), ray) : Exact{std::numeric_limits<double>::infinity(), 0};
-    const Exact their = theyHit ? meet(mesh, theirs.hit.primID, ray) : Exact{std::numeric_limits<double>::infinity(), 0};
+    const Exact their =
+        theyHit ? meet(mesh, theirs.hit.primID, ray) : Exact{std::numeric_limits<double>::infinity(), 0};
     if (weHit && our.inside < -EDGE) return Reason::None; // we claim a hit that is none
     if (weHit && theyHit && std::abs(our.t - their.t) <= 1e-5 * their.t) return Reason::Tie;
     const Exact& nearer = our.t < their.t ? our : their;
@@ -177,7 +179,10 @@ class IntersectAgreement : public Intersect
     }
 };
 
-TEST_F(IntersectAgreement, WithEmbreeInTheHall) { expectAgreement(scene::makeHall(), 256); }
+TEST_F(IntersectAgreement, WithEmbreeInTheHall)
+{
+    expectAgreement(scene::makeHall(), 256);
+}
 
 TEST_F(IntersectAgreement, WithEmbreeInSponza)
 {
@@ -188,7 +193,8 @@ TEST_F(IntersectAgreement, WithEmbreeInSponza)
     expectAgreement(scene::loadGltf(file), size ? uint32_t(std::atoi(size)) : 256u);
 }
 
-// -------------------------------------------------------------------------------------------------------------- promises
+// --------------------------------------------------------------------------------------------------------------
+// promises
 
 TEST_F(Intersect, OfNothingIsNothing)
 {
@@ -242,8 +248,8 @@ TEST_F(Intersect, ResolvesTiesToTheLowestIndex)
     for (const Hit& hit : trace(mesh, rays)) EXPECT_EQ(hit.triangle(), 0u);
 }
 
-// Alpha-tested layers are passed one by one within a single traversal. A driver that cuts loops short would lose the wall
-// behind them: lavapipe 22.3 leaves every loop after 65 535 iterations of all loops of an invocation together.
+// Alpha-tested layers are passed one by one within a single traversal. A driver that cuts loops short would lose the
+// wall behind them: lavapipe 22.3 leaves every loop after 65 535 iterations of all loops of an invocation together.
 TEST_F(Intersect, PassesThroughManyTransparentLayers)
 {
     constexpr uint32_t LAYERS = 12000;
