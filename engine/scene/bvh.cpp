@@ -1,8 +1,237 @@
-// TEMPORARY brute force, so that everything builds until the real builder lands: replace this file whole.
 #include "engine/scene/bvh.h"
-#include <bit>
-namespace scene {
-Bvh buildBvh(const BvhInput& in, uint64_t) { Bvh b; b.nodes.push_back(glm::uvec4(in.triangles.size(),0,0,0));
- for (size_t t=0;t<in.triangles.size();++t) for (size_t i=0;i<3;++i){auto p=in.positions[in.triangles[t].vertices[i]]; b.triangles.push_back({std::bit_cast<uint32_t>(p.x),std::bit_cast<uint32_t>(p.y),std::bit_cast<uint32_t>(p.z), in.needsAlphaTest.empty()?0u:in.needsAlphaTest[t]});}
- return b; }
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include <embree3/rtcore.h>
+#include <embree3/rtcore_builder.h>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/scene/bvh_tree.h"
+#include "shaders/shared/bvh.h"
+
+namespace scene
+{
+
+namespace
+{
+
+// Coordinates beyond this count as non-finite: Embree drops them, and areas would overflow.
+constexpr float LARGEST_COORDINATE = 1e18f;
+// Spatial splits may add this part of the triangles: beyond it the cost hardly falls (tests/bench/LOG.md).
+constexpr double SPATIAL_SPLIT_GROWTH = 0.3;
+constexpr double EMBREE_SHARE = 0.8; // of the whole build's time, for progress
+
+using Corners = std::array<glm::vec3, 3>;
+
+Corners cornersOf(const BvhInput& input, uint32_t triangle)
+{
+    const auto& vertices = input.triangles[triangle].vertices;
+    return {input.positions[vertices[0]], input.positions[vertices[1]], input.positions[vertices[2]]};
 }
+
+bool isUsable(const Corners& v)
+{
+    for (const glm::vec3& corner : v)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(corner[axis]) <= LARGEST_COORDINATE)) return false;
+    const glm::dvec3 normal = glm::cross(glm::dvec3(v[1]) - glm::dvec3(v[0]), glm::dvec3(v[2]) - glm::dvec3(v[0]));
+    return glm::dot(normal, normal) > 0.0;
+}
+
+// Embree's nodes while it builds; a leaf has no children.
+struct BuildNode {
+    std::array<BuildNode*, 2> children = {nullptr, nullptr};
+    std::array<Box, 2> childBoxes;
+    uint32_t triangle = NONE;
+};
+static_assert(std::is_trivially_destructible_v<BuildNode>); // Embree's arena frees them unseen
+
+BuildNode* newNode(RTCThreadLocalAllocator allocator)
+{
+    return new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
+}
+
+struct BuildContext {
+    const BvhInput* input = nullptr;
+    std::mutex mutex; // of progress: Embree's threads report
+    double reported = 0;
+};
+
+RTCBounds boundsOf(const Box& box)
+{
+    return {box.lower.x, box.lower.y, box.lower.z, 0, box.upper.x, box.upper.y, box.upper.z, 0};
+}
+
+// The boxes of the triangle's parts on either side of a plane, within the box it has already been cut to.
+void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned axisIndex, float position, RTCBounds* left,
+                    RTCBounds* right, void* context)
+{
+    const int axis = int(axisIndex);
+    const Corners v = cornersOf(*static_cast<BuildContext*>(context)->input, primitive->primID);
+    std::array<Box, 2> parts;
+    const auto extend = [&](int side, const glm::vec3& point) { parts[size_t(side)].extend({point, point}); };
+    for (size_t i = 0; i < 3; ++i) {
+        const glm::vec3 a = v[i];
+        const glm::vec3 b = v[(i + 1) % 3];
+        if (a[axis] <= position) extend(0, a);
+        if (a[axis] >= position) extend(1, a);
+        if ((a[axis] < position && b[axis] > position) || (a[axis] > position && b[axis] < position)) {
+            glm::vec3 cut = glm::mix(a, b, (position - a[axis]) / (b[axis] - a[axis]));
+            cut[axis] = position;
+            extend(0, cut);
+            extend(1, cut);
+        }
+    }
+    const Box whole = {{primitive->lower_x, primitive->lower_y, primitive->lower_z},
+                       {primitive->upper_x, primitive->upper_y, primitive->upper_z}};
+    for (Box& part : parts) { // a part lost to rounding becomes a point of the whole
+        part.lower = glm::clamp(part.lower, whole.lower, whole.upper);
+        part.upper = glm::clamp(part.upper, part.lower, whole.upper);
+    }
+    *left = boundsOf(parts[0]);
+    *right = boundsOf(parts[1]);
+}
+
+bool reportProgress(void* context, double fraction)
+{
+    auto& build = *static_cast<BuildContext*>(context);
+    const std::lock_guard lock(build.mutex);
+    if (fraction > build.reported) {
+        build.reported = fraction;
+        build.input->progress(EMBREE_SHARE * std::min(fraction, 1.0));
+    }
+    return true;
+}
+
+std::vector<RTCBuildPrimitive> usablePrimitives(const BvhInput& input)
+{
+    std::vector<RTCBuildPrimitive> primitives;
+    primitives.reserve(input.triangles.size());
+    for (uint32_t i = 0; i < input.triangles.size(); ++i) {
+        const Corners v = cornersOf(input, i);
+        if (!isUsable(v)) continue;
+        const glm::vec3 lower = glm::min(v[0], glm::min(v[1], v[2]));
+        const glm::vec3 upper = glm::max(v[0], glm::max(v[1], v[2]));
+        primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, i});
+    }
+    return primitives;
+}
+
+// Appends the subtree, children before parents; returns its root's index.
+uint32_t flatten(const BuildNode& node, const Box& box, BinaryTree& out)
+{
+    if (node.triangle != NONE) {
+        out.push_back({.box = box, .left = node.triangle});
+    } else {
+        const uint32_t left = flatten(*node.children[0], node.childBoxes[0], out);
+        const uint32_t right = flatten(*node.children[1], node.childBoxes[1], out);
+        out.push_back({.box = box, .left = left, .right = right});
+    }
+    return uint32_t(out.size() - 1);
+}
+
+BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive> primitives, bool spatialSplits)
+{
+    if (primitives.empty()) return {};
+    BuildContext context;
+    context.input = &input;
+    Box scene;
+    for (const RTCBuildPrimitive& p : primitives)
+        scene.extend({{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}});
+
+    const std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device(rtcNewDevice(nullptr), rtcReleaseDevice);
+    if (!device) throw Error("Embree cannot start (error {}).", int(rtcGetDeviceError(nullptr)));
+    const std::unique_ptr<RTCBVHTy, decltype(&rtcReleaseBVH)> bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
+
+    const size_t count = primitives.size();
+    primitives.resize(count + (spatialSplits ? size_t(double(count) * SPATIAL_SPLIT_GROWTH) : 0));
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.bvh = bvh.get();
+    arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
+    arguments.maxBranchingFactor = 2;
+    arguments.maxDepth = BVH_MAX_BINARY_DEPTH;
+    arguments.minLeafSize = 1;
+    arguments.maxLeafSize = 1;
+    arguments.primitives = primitives.data();
+    arguments.primitiveCount = count;
+    arguments.primitiveArrayCapacity = primitives.size();
+    arguments.createNode = [](RTCThreadLocalAllocator allocator, unsigned, void*) -> void* {
+        return newNode(allocator);
+    };
+    arguments.setNodeChildren = [](void* node, void** children, unsigned childCount, void*) {
+        CHECK_EQ(childCount, 2u);
+        for (size_t i = 0; i < 2; ++i)
+            static_cast<BuildNode*>(node)->children[i] = static_cast<BuildNode*>(children[i]);
+    };
+    arguments.setNodeBounds = [](void* node, const RTCBounds** bounds, unsigned, void*) {
+        for (size_t i = 0; i < 2; ++i)
+            static_cast<BuildNode*>(node)->childBoxes[i] = {
+                {bounds[i]->lower_x, bounds[i]->lower_y, bounds[i]->lower_z},
+                {bounds[i]->upper_x, bounds[i]->upper_y, bounds[i]->upper_z}};
+    };
+    arguments.createLeaf = [](RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* leaf, size_t leafCount,
+                              void*) -> void* {
+        CHECK_EQ(leafCount, size_t{1});
+        BuildNode* node = newNode(allocator);
+        node->triangle = leaf->primID;
+        return node;
+    };
+    arguments.splitPrimitive = splitPrimitive;
+    if (input.progress) arguments.buildProgress = reportProgress;
+    arguments.userPtr = &context;
+    const void* root = rtcBuildBVH(&arguments);
+    if (root == nullptr)
+        throw Error("Embree cannot build a tree over {} triangles (error {}).", count,
+                    int(rtcGetDeviceError(device.get())));
+    BinaryTree tree;
+    tree.reserve(2 * primitives.size());
+    flatten(*static_cast<const BuildNode*>(root), scene, tree);
+    return tree;
+}
+
+} // namespace
+
+Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
+{
+    CHECK(input.needsAlphaTest.empty() || input.needsAlphaTest.size() == input.triangles.size());
+    CHECK_LT(input.triangles.size(), size_t{shared::BVH_ALPHA_FLAG});
+    const auto start = std::chrono::steady_clock::now();
+
+    Bvh bvh;
+    const std::vector<RTCBuildPrimitive> primitives = usablePrimitives(input);
+    bvh.stats.skippedTriangles = input.triangles.size() - primitives.size();
+    const auto fits = [&](const WideTree& tree) {
+        return std::max(tree.nodes.size() * shared::BVH_NODE_STRIDE,
+                        tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE) *
+                   sizeof(glm::uvec4) <=
+               maxTableBytes;
+    };
+    WideTree tree = collapse(buildBinaryTree(input, primitives, true));
+    if (!fits(tree)) tree = collapse(buildBinaryTree(input, primitives, false));
+    if (!fits(tree))
+        throw Error("The scene's {} triangles need tables of {} and {} bytes, more than this device's limit of {}.",
+                    primitives.size(), tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE * sizeof(glm::uvec4),
+                    tree.nodes.size() * shared::BVH_NODE_STRIDE * sizeof(glm::uvec4), maxTableBytes);
+
+    bvh.nodes = encodeNodes(tree);
+    bvh.triangles = encodeTriangles(tree, input);
+    bvh.stats.nodes = tree.nodes.size();
+    bvh.stats.triangleRecords = tree.triangles.size();
+    bvh.stats.bytes = (bvh.nodes.size() + bvh.triangles.size()) * sizeof(glm::uvec4);
+    bvh.stats.sahCost = sahCost(tree);
+    bvh.stats.depth = tree.levels;
+    bvh.stats.buildSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (input.progress) input.progress(1.0);
+    return bvh;
+}
+
+} // namespace scene

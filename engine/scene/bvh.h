@@ -1,5 +1,6 @@
 #pragma once
-// Embree's builder, flattened into tables for traversal in compute shaders (shaders/scene/intersect.glsl).
+// Embree's builder, flattened into tables for traversal in compute shaders (shaders/scene/intersect.glsl). The tables'
+// layout: shaders/shared/bvh.h.
 
 #include <cstdint>
 #include <functional>
@@ -10,15 +11,17 @@
 
 #include "engine/scene/scene.h"
 
-namespace scene {
+namespace scene
+{
 
 struct BvhStats {
     uint64_t nodes = 0;
-    uint64_t triangleRecords = 0; // with duplicates of spatial splits
+    uint64_t triangleRecords = 0;  // with duplicates of spatial splits
+    uint64_t skippedTriangles = 0; // degenerate or non-finite
     uint64_t bytes = 0;
-    double sahCost = 0;
+    double sahCost = 0; // expected cost of a random ray through the scene's box, in node visits
     double buildSeconds = 0;
-    uint32_t depth = 0; // largest number of stack entries that traversal can need
+    uint32_t depth = 0; // largest number of stack entries that traversal can need, at most shared::BVH_STACK_SIZE
 };
 
 struct Bvh {
@@ -31,11 +34,11 @@ struct BvhInput {
     std::span<const glm::vec3> positions;
     std::span<const Triangle> triangles;
     std::span<const uint8_t> needsAlphaTest; // per triangle, 0 or 1; empty: none does
-    std::function<void(double)> progress;    // fraction done in [0,1]; may be empty
+    std::function<void(double)> progress;    // fraction done in [0,1], from one thread at a time; may be empty
 };
 
 // Degenerate and non-finite triangles are left out. No triangle at all gives a tree that nothing hits.
-// Throws Error when the tree cannot fit `maxTableBytes`.
+// Throws Error when the tree cannot fit `maxTableBytes`, for each of the two tables.
 Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes);
 
 } // namespace scene

@@ -3,6 +3,8 @@
 #define SHADERS_SCENE_CAMERA_GLSL
 
 #include "scene/bindings.glsl"
+#include "scene/surface.glsl" // alphaPasses, which traversal asks
+
 #include "scene/intersect.glsl"
 
 // `at` in pixels, (0, 0) is the picture's upper left corner.

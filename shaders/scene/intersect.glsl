@@ -1,14 +1,267 @@
-// TEMPORARY brute force, so that everything builds until the real traversal lands: replace this file whole.
-struct Ray { vec3 origin; vec3 direction; float tMax; };
-struct Hit { uint triangle; vec2 barycentric; float t; };
-const uint NO_HIT=0xffffffffu; const float RAY_MAX=1e30;
-#include "scene/surface.glsl"
-Hit closestHit(Ray r, uint alphaSeed){
- Hit h=Hit(NO_HIT, vec2(0), r.tMax);
- uint n=FETCH(Nodes,0).x;
- for(uint i=0u;i<n;++i){ vec3 p0=uintBitsToFloat(FETCH(Triangles,i*3u).xyz),p1=uintBitsToFloat(FETCH(Triangles,i*3u+1u).xyz),p2=uintBitsToFloat(FETCH(Triangles,i*3u+2u).xyz);
-  vec3 e1=p1-p0,e2=p2-p0; vec3 p=cross(r.direction,e2); float d=dot(e1,p); if(d==0.0) continue; float inv=1.0/d; vec3 s=r.origin-p0; float u=dot(s,p)*inv; vec3 q=cross(s,e1); float v=dot(r.direction,q)*inv; float t=dot(e2,q)*inv;
-  if(u>=0.0&&v>=0.0&&u+v<=1.0&&t>0.0&&t<h.t && (!HAS_ALPHA || FETCH(Triangles,i*3u).w==0u || alphaPasses(i,vec2(u,v),alphaSeed))){h=Hit(i,vec2(u,v),t);} }
- return h;}
-bool occluded(Ray r, uint a){return closestHit(r,a).triangle!=NO_HIT;}
-vec3 offsetOrigin(vec3 p, vec3 n, vec3 d){return p+n*(dot(n,d)>0.0?1.0:-1.0)*1e-5;}
+// Rays against the scene: closestHit, occluded, offsetOrigin. The tables' layout and the tree's source: shared/bvh.h.
+//
+// The includer declares the tables Nodes and Triangles, the constant bool HAS_ALPHA and
+// bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of flagged triangles only.
+//
+// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
+// least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
+// ray's signs.
+#ifndef SHADERS_SCENE_INTERSECT_GLSL
+#define SHADERS_SCENE_INTERSECT_GLSL
+
+#include "lib/table.glsl"
+#include "shared/bvh.h"
+
+const uint NO_HIT = 0xffffffffu;
+const float RAY_MAX = 1e30; // farther than anything
+
+struct Ray {
+    vec3 origin;
+    vec3 direction; // unit
+    float tMax;
+};
+
+struct Hit {
+    uint triangle;    // NO_HIT: none
+    vec2 barycentric; // position = (1-u-v) v0 + u v1 + v v2
+    float t;
+};
+
+// A ray made ready for the tree.
+struct TraversalRay {
+    vec3 origin;   // of the advanced ray
+    float advance; // distance from Ray::origin to it
+    vec3 direction;
+    vec3 inverse; // of the direction, finite
+    vec3 tangent; // tangent, bitangent, direction: the frame in which triangles are tested
+    vec3 bitangent;
+    float tMin; // a little before the origin: a surface that rounding has put behind it still counts
+    uint signs; // bit a: component a of the direction is negative
+};
+
+// Part of a coordinate's size by which a point on a surface may be off it; surfaces this near behind an origin are hit,
+// offsetOrigin moves 8 times as far.
+const float POSITION_ERROR = 1.0 / 4194304.0; // 2^-22
+const float ORIGIN_OFFSET = 8.0 * POSITION_ERROR;
+
+// Distance to go before the scene, at most two of its radii away, can begin: keeps coordinates relative to the origin,
+// and their rounding, of the scene's size however far the origin is.
+float distanceToScene(vec3 origin, vec3 direction)
+{
+    uvec4 frame = FETCH(Nodes, 0);
+    uvec3 exponents = (uvec3(frame.w) >> uvec3(0u, 8u, 16u)) & 255u;
+    vec3 halfExtent = 127.5 * uintBitsToFloat(exponents << 23);
+    vec3 center = uintBitsToFloat(frame.xyz) + halfExtent;
+    return max(dot(center - origin, direction) - 2.0 * length(halfExtent), 0.0);
+}
+
+// Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+void frameOf(vec3 n, out vec3 tangent, out vec3 bitangent)
+{
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    tangent = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
+    bitangent = vec3(b, s + n.y * n.y * a, -n.y);
+}
+
+float finiteInverse(float x)
+{
+    const float SMALLEST = 1e-15; // moves a ray by less than 1e-15 of its length
+    return 1.0 / (abs(x) < SMALLEST ? (x < 0.0 ? -SMALLEST : SMALLEST) : x);
+}
+
+TraversalRay prepare(Ray ray)
+{
+    TraversalRay r;
+    r.advance = distanceToScene(ray.origin, ray.direction);
+    r.origin = ray.origin + r.advance * ray.direction;
+    r.direction = ray.direction;
+    r.inverse = vec3(finiteInverse(ray.direction.x), finiteInverse(ray.direction.y), finiteInverse(ray.direction.z));
+    frameOf(ray.direction, r.tangent, r.bitangent);
+    vec3 size = abs(r.origin);
+    r.tMin = -POSITION_ERROR * max(size.x, max(size.y, size.z));
+    r.signs = (r.inverse.x < 0.0 ? 1u : 0u) | (r.inverse.y < 0.0 ? 2u : 0u) | (r.inverse.z < 0.0 ? 4u : 0u);
+    return r;
+}
+
+float byteAt(uint word, int index)
+{
+    return float(int((word >> (8 * index)) & 255u));
+}
+
+// `bits` where the ray within [tMin, tMax] meets slot `i` of the four whose planes are packed in the words; else 0.
+uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin, float tMax, uint bits)
+{
+    float nearX = byteAt(near.x, i) * scale.x + shift.x;
+    float nearY = byteAt(near.y, i) * scale.y + shift.y;
+    float nearZ = byteAt(near.z, i) * scale.z + shift.z;
+    float farX = byteAt(far.x, i) * scale.x + shift.x;
+    float farY = byteAt(far.y, i) * scale.y + shift.y;
+    float farZ = byteAt(far.z, i) * scale.z + shift.z;
+    precise float enterXY = nearX > nearY ? nearX : nearY;
+    precise float enterZ = nearZ > tMin ? nearZ : tMin;
+    precise float enter = enterXY > enterZ ? enterXY : enterZ;
+    precise float leaveXY = farX < farY ? farX : farY;
+    precise float leaveZ = farZ < tMax ? farZ : tMax;
+    precise float leave = leaveXY < leaveZ ? leaveXY : leaveZ;
+    return enter <= leave ? bits : 0u;
+}
+
+uint slotBits(uint slot)
+{
+    return (7u << (3u * slot)) | (1u << (24u + slot));
+}
+
+// The children that the ray meets, as the node's masks with the others' bits cleared.
+uint meetChildren(TraversalRay r, float tMax, uvec4 grid, uint masks, uvec4 a, uvec4 b, uvec4 c)
+{
+    vec3 scale = uintBitsToFloat((uvec3(grid.w) << uvec3(23u, 15u, 7u)) & 0x7f800000u) * r.inverse;
+    vec3 shift = (uintBitsToFloat(grid.xyz) - r.origin) * r.inverse;
+    bvec3 negative = lessThan(r.inverse, vec3(0.0));
+    // Planes: lower x = a.xy, lower y = a.zw, lower z = b.xy, upper x = b.zw, upper y = c.xy, upper z = c.zw.
+    uint hits = 0u;
+    {
+        uvec3 lower = uvec3(a.x, a.z, b.x);
+        uvec3 upper = uvec3(b.z, c.x, c.z);
+        uvec3 near = mix(lower, upper, negative);
+        uvec3 far = mix(upper, lower, negative);
+        for (int i = 0; i < 4; ++i) hits |= meetsSlot(i, near, far, scale, shift, r.tMin, tMax, slotBits(uint(i)));
+    }
+    {
+        uvec3 lower = uvec3(a.y, a.w, b.y);
+        uvec3 upper = uvec3(b.w, c.y, c.w);
+        uvec3 near = mix(lower, upper, negative);
+        uvec3 far = mix(upper, lower, negative);
+        for (int i = 0; i < 4; ++i) hits |= meetsSlot(i, near, far, scale, shift, r.tMin, tMax, slotBits(uint(i) + 4u));
+    }
+    return hits & masks;
+}
+
+// Moves bit s to bit s ^ signs: ascending bits are then roughly front to back.
+uint frontToBack(uint slots, uint signs)
+{
+    uint x = ((slots & 0x55u) << 1) | ((slots >> 1) & 0x55u);
+    slots = (signs & 1u) != 0u ? x : slots;
+    uint y = ((slots & 0x33u) << 2) | ((slots >> 2) & 0x33u);
+    slots = (signs & 2u) != 0u ? y : slots;
+    uint z = ((slots & 0x0fu) << 4) | ((slots >> 4) & 0x0fu);
+    return (signs & 4u) != 0u ? z : slots;
+}
+
+uint bitsBelow(uint bit)
+{
+    return (1u << bit) - 1u;
+}
+
+// Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else,
+// and two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v
+// are convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
+bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out vec2 barycentric)
+{
+    vec3 a = v0 - r.origin;
+    vec3 b = v1 - r.origin;
+    vec3 c = v2 - r.origin;
+    vec2 p = vec2(dot(a, r.tangent), dot(a, r.bitangent));
+    vec2 q = vec2(dot(b, r.tangent), dot(b, r.bitangent));
+    vec2 s = vec2(dot(c, r.tangent), dot(c, r.bitangent));
+    precise float w0 = s.x * q.y - s.y * q.x;
+    precise float w1 = p.x * s.y - p.y * s.x;
+    precise float w2 = q.x * p.y - q.y * p.x;
+    float total = w0 + w1 + w2;
+    vec3 normal = cross(v1 - v0, v2 - v0);
+    float slope = dot(normal, r.direction);
+    bool inside = (w0 >= 0.0 && w1 >= 0.0 && w2 >= 0.0) || (w0 <= 0.0 && w1 <= 0.0 && w2 <= 0.0);
+    bool met = inside && total != 0.0 && slope != 0.0;
+    barycentric = vec2(w1, w2) / (met ? total : 1.0);
+    t = dot(normal, a) / (met ? slope : 1.0);
+    return met;
+}
+
+// Depth-first; a group is the rest of one node's child nodes: bits 0..7 those to visit, front to back; 8..15 all that
+// are.
+Hit traverse(Ray ray, uint alphaSeed, bool any)
+{
+    uint stackBase[BVH_STACK_SIZE];
+    uint stackGroup[BVH_STACK_SIZE];
+    uint depth = 0u;
+
+    TraversalRay r = prepare(ray);
+    Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
+    uint base = 0u;
+    uint group = 1u; // the root: of its parent's child nodes the first in order, none before it
+    bool more = true;
+    do {
+        uint slot = uint(findLSB(group & 255u)) ^ r.signs;
+        uint node = BVH_NODE_STRIDE * (base + uint(bitCount((group >> 8) & bitsBelow(slot))));
+        group &= group - 1u;
+        stackBase[depth] = base;
+        stackGroup[depth] = group;
+        depth += (group & 255u) != 0u ? 1u : 0u;
+
+        uvec4 links = FETCH(Nodes, node + 1u);
+        uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
+                                 FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
+        base = links.y;
+        group = frontToBack(hits >> 24, r.signs) | ((links.x >> 16) & 0xff00u);
+
+        uint triangles = hits & 0xffffffu;
+        do {
+            bool valid = triangles != 0u;
+            uint bit = valid ? uint(findLSB(triangles)) : 0u;
+            triangles &= triangles - 1u;
+            uint record = valid ? BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(links.x & bitsBelow(bit)))) : 0u;
+            uvec4 v0 = FETCH(Triangles, record);
+            vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
+            vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
+            float t;
+            vec2 barycentric;
+            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
+            uint triangle = v0.w & ~BVH_ALPHA_FLAG;
+            met = met && t >= r.tMin && (t < hit.t || (t == hit.t && triangle < hit.triangle));
+            if (HAS_ALPHA) {
+                if (met && (v0.w & BVH_ALPHA_FLAG) != 0u) met = alphaPasses(triangle, barycentric, alphaSeed);
+            }
+            if (met) hit = Hit(triangle, barycentric, t);
+            if (any && met) triangles = 0u;
+        } while (triangles != 0u);
+
+        if ((group & 255u) == 0u) {
+            more = depth != 0u;
+            depth = more ? depth - 1u : 0u;
+            base = stackBase[depth];
+            group = stackGroup[depth];
+        }
+        if (any && hit.triangle != NO_HIT) more = false;
+    } while (more);
+    hit.t = max(hit.t + r.advance, 0.0);
+    return hit;
+}
+
+// The nearest triangle before tMax; of several at the same t the one of the lowest index.
+Hit closestHit(Ray ray, uint alphaSeed)
+{
+    return traverse(ray, alphaSeed, false);
+}
+
+// Is there any triangle before tMax?
+bool occluded(Ray ray, uint alphaSeed)
+{
+    return traverse(ray, alphaSeed, true).triangle != NO_HIT;
+}
+
+// Where a ray that leaves a surface point starts: off the surface, on the side of `direction`, by more than rounding
+// can have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices, or a bound of it.
+vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction, float magnitude)
+{
+    float side = dot(geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
+    return position + (side * ORIGIN_OFFSET * magnitude) * geometricNormal;
+}
+
+// The same in a scene whose coordinates are at most 1.
+vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction)
+{
+    return offsetOrigin(position, geometricNormal, direction, 1.0);
+}
+
+#endif

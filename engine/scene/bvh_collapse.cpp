@@ -1,0 +1,240 @@
+#include "engine/scene/bvh_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/base/check.h"
+#include "shaders/shared/bvh.h"
+
+namespace scene
+{
+
+namespace
+{
+
+// What is best for one binary node: cost[i-1] of its triangles when it may become at most i roots of wide subtrees.
+struct Plan {
+    std::array<float, BVH_WIDTH - 1> cost = {};
+    std::array<uint8_t, BVH_WIDTH - 1> left =
+        {}; // [i-2]: of i roots, those left of the split; 0: i-1 roots are as good
+    uint32_t triangles = 1;
+    uint32_t height = 0;
+    bool leaf = true; // as one root: a leaf
+};
+
+using Roots = std::vector<uint32_t>; // binary nodes
+
+class Collapser
+{
+  public:
+    explicit Collapser(const BinaryTree& tree) : tree_(tree), plans_(tree.size())
+    {
+        for (size_t node = 0; node < tree.size(); ++node) plans_[node] = plan(tree[node]);
+    }
+
+    WideTree run()
+    {
+        WideTree wide = emit();
+        if (wide.levels > shared::BVH_STACK_SIZE) { // never seen but for scenes made for it
+            byHeight_ = true;
+            wide = emit();
+        }
+        CHECK_LE(wide.levels, shared::BVH_STACK_SIZE);
+        return wide;
+    }
+
+  private:
+    Plan plan(const BinaryNode& node) const
+    {
+        Plan plan;
+        const float area = node.box.halfArea();
+        if (node.isLeaf()) {
+            plan.cost.fill(area * BVH_TRIANGLE_COST);
+            return plan;
+        }
+        const Plan& left = plans_[node.left];
+        const Plan& right = plans_[node.right];
+        plan.triangles = left.triangles + right.triangles;
+        plan.height = 1 + std::max(left.height, right.height);
+
+        const auto split = [&](uint32_t roots) {
+            std::pair<float, uint8_t> best = {std::numeric_limits<float>::infinity(), uint8_t{1}};
+            for (uint32_t k = 1; k < roots; ++k)
+                best = std::min(best, {left.cost[k - 1] + right.cost[roots - k - 1], uint8_t(k)});
+            return best;
+        };
+        const auto [forest, leftOfEight] = split(BVH_WIDTH);
+        plan.left[BVH_WIDTH - 2] = leftOfEight;
+        const float asNode = forest + area * BVH_NODE_COST;
+        const float asLeaf = area * float(plan.triangles) * BVH_TRIANGLE_COST;
+        plan.leaf = plan.triangles <= BVH_LEAF_TRIANGLES && asLeaf <= asNode;
+        plan.cost[0] = plan.leaf ? asLeaf : asNode;
+        for (uint32_t roots = 2; roots < BVH_WIDTH; ++roots) {
+            const auto [cost, leftRoots] = split(roots);
+            const bool better = cost < plan.cost[roots - 2];
+            plan.cost[roots - 1] = better ? cost : plan.cost[roots - 2];
+            plan.left[roots - 2] = better ? leftRoots : uint8_t{0};
+        }
+        return plan;
+    }
+
+    void gather(uint32_t node, uint32_t roots, Roots& out) const
+    {
+        while (roots > 1 && !tree_[node].isLeaf() && plans_[node].left[roots - 2] == 0) --roots;
+        if (roots == 1 || tree_[node].isLeaf()) {
+            out.push_back(node);
+            return;
+        }
+        const uint32_t leftRoots = plans_[node].left[roots - 2];
+        gather(tree_[node].left, leftRoots, out);
+        gather(tree_[node].right, roots - leftRoots, out);
+    }
+
+    // The binary nodes that become the slots of the wide node made from `node`.
+    Roots childrenOf(uint32_t node) const
+    {
+        Roots roots;
+        if (isLeaf(node))
+            roots = {node}; // the root of a tiny tree
+        else if (byHeight_)
+            roots = tallestOpened(node);
+        else
+            gather(node, BVH_WIDTH, roots);
+        return roots;
+    }
+
+    // Each wide level takes three binary ones, whatever the tree's shape: bounds the depth.
+    Roots tallestOpened(uint32_t node) const
+    {
+        const auto height = [&](uint32_t root) { return isLeaf(root) ? 0 : plans_[root].height; };
+        Roots roots = {node};
+        while (roots.size() < BVH_WIDTH) {
+            const auto tallest = std::max_element(roots.begin(), roots.end(),
+                                                  [&](uint32_t a, uint32_t b) { return height(a) < height(b); });
+            if (height(*tallest) == 0) break;
+            const BinaryNode& opened = tree_[*tallest];
+            *tallest = opened.left;
+            roots.push_back(opened.right);
+        }
+        return roots;
+    }
+
+    bool isLeaf(uint32_t node) const
+    {
+        return byHeight_ ? plans_[node].triangles <= BVH_LEAF_TRIANGLES : plans_[node].leaf;
+    }
+
+    void gatherTriangles(uint32_t node, std::vector<uint32_t>& out) const
+    {
+        if (tree_[node].isLeaf()) {
+            out.push_back(tree_[node].left);
+        } else {
+            gatherTriangles(tree_[node].left, out);
+            gatherTriangles(tree_[node].right, out);
+        }
+    }
+
+    // Which slot each root takes, so that ascending (slot xor signs of the direction) is roughly front to back:
+    // greedily the pair of root and slot's diagonal that agree best (Section 3.2).
+    std::array<uint32_t, BVH_WIDTH> slotsOf(const Roots& roots, glm::vec3 center) const
+    {
+        std::array<uint32_t, BVH_WIDTH> slots;
+        slots.fill(NONE);
+        uint32_t taken = 0;
+        for (size_t round = 0; round < roots.size(); ++round) {
+            float best = -std::numeric_limits<float>::infinity();
+            size_t bestRoot = 0;
+            uint32_t bestSlot = 0;
+            for (size_t root = 0; root < roots.size(); ++root) {
+                if (slots[root] != NONE) continue;
+                const glm::vec3 offset = tree_[roots[root]].box.center() - center;
+                for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
+                    if ((taken >> slot & 1u) != 0) continue;
+                    const float agreement = ((slot & 1u) != 0 ? offset.x : -offset.x) +
+                                            ((slot & 2u) != 0 ? offset.y : -offset.y) +
+                                            ((slot & 4u) != 0 ? offset.z : -offset.z);
+                    if (agreement > best) {
+                        best = agreement;
+                        bestRoot = root;
+                        bestSlot = slot;
+                    }
+                }
+            }
+            slots[bestRoot] = bestSlot;
+            taken |= 1u << bestSlot;
+        }
+        return slots;
+    }
+
+    WideTree emit() const
+    {
+        WideTree wide;
+        wide.nodes.emplace_back();
+        if (!tree_.empty()) emitNode(uint32_t(tree_.size() - 1), 0, 1, wide);
+        return wide;
+    }
+
+    // Depth first, so that a subtree lies together in memory.
+    void emitNode(uint32_t node, uint32_t index, uint32_t level, WideTree& wide) const
+    {
+        wide.levels = std::max(wide.levels, level);
+        const Roots roots = childrenOf(node);
+        const std::array<uint32_t, BVH_WIDTH> slots = slotsOf(roots, tree_[node].box.center());
+        std::array<uint32_t, BVH_WIDTH> rootOfSlot;
+        rootOfSlot.fill(NONE);
+        for (size_t root = 0; root < roots.size(); ++root) rootOfSlot[slots[root]] = roots[root];
+
+        WideNode result;
+        std::vector<uint32_t> inner;
+        const uint32_t firstChild = uint32_t(wide.nodes.size());
+        for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
+            const uint32_t root = rootOfSlot[slot];
+            if (root == NONE) continue;
+            WideChild& child = result.slots[slot];
+            child.box = tree_[root].box;
+            if (isLeaf(root)) {
+                child.kind = WideChild::Kind::Leaf;
+                child.first = uint32_t(wide.triangles.size());
+                gatherTriangles(root, wide.triangles);
+                const auto begin = wide.triangles.begin() + child.first; // spatial splits can bring one twice
+                std::sort(begin, wide.triangles.end());
+                wide.triangles.erase(std::unique(begin, wide.triangles.end()), wide.triangles.end());
+                child.count = uint8_t(wide.triangles.size() - child.first);
+            } else {
+                child.kind = WideChild::Kind::Node;
+                child.first = firstChild + uint32_t(inner.size());
+                inner.push_back(root);
+            }
+        }
+        wide.nodes[index] = result;
+        wide.nodes.resize(wide.nodes.size() + inner.size());
+        for (size_t i = 0; i < inner.size(); ++i) emitNode(inner[i], firstChild + uint32_t(i), level + 1, wide);
+    }
+
+    const BinaryTree& tree_;
+    std::vector<Plan> plans_;
+    bool byHeight_ = false;
+};
+
+} // namespace
+
+WideTree collapse(const BinaryTree& tree)
+{
+    return Collapser(tree).run();
+}
+
+double sahCost(const WideTree& tree)
+{
+    if (tree.triangles.empty()) return 0;
+    Box root;
+    for (const WideChild& child : tree.nodes[0].slots) root.extend(child.box);
+    double cost = BVH_NODE_COST * root.halfArea();
+    for (const WideNode& node : tree.nodes)
+        for (const WideChild& child : node.slots) {
+            if (child.kind == WideChild::Kind::Node) cost += BVH_NODE_COST * child.box.halfArea();
+            if (child.kind == WideChild::Kind::Leaf) cost += BVH_TRIANGLE_COST * child.count * child.box.halfArea();
+        }
+    return cost / root.halfArea();
+}
+
+} // namespace scene

@@ -1,0 +1,126 @@
+#include "engine/scene/bvh_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "shaders/shared/bvh.h"
+
+namespace scene
+{
+
+namespace
+{
+
+// Boxes grow by this part of the scene's largest coordinate: more than what rounding in the traversal's slab test can
+// lose. With the ray's origin within 5 R of every plane, the errors of the plane's distance (subtraction, product with
+// the inverse direction of 2.5 ulp, byte times step, sum), seen as a shift of the plane, sum to under 32 * 2^-24 R. It
+// also covers the triangle's own error in t, so that a triangle is never nearer than its box.
+constexpr double BOX_MARGIN = 0x1p-19;
+
+struct Grid {
+    float corner = 0;
+    int exponent = 1; // biased by 127
+    double step() const { return std::ldexp(1.0, exponent - 127); }
+};
+
+Grid fitGrid(double lower, double upper)
+{
+    Grid grid;
+    grid.corner = float(lower);
+    if (double(grid.corner) > lower) grid.corner = std::nextafter(grid.corner, -std::numeric_limits<float>::infinity());
+    int exponent = 0;
+    std::frexp((upper - double(grid.corner)) / 255.0, &exponent); // 2^exponent exceeds the quotient
+    grid.exponent = std::max(exponent + 127, 1);
+    CHECK_LE(grid.exponent, 254);
+    return grid;
+}
+
+uint32_t quantize(double value)
+{
+    CHECK(value >= 0.0 && value <= 255.0);
+    return uint32_t(value);
+}
+
+std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, float margin)
+{
+    Box box;
+    for (const WideChild& child : node.slots)
+        if (child.kind != WideChild::Kind::Empty) box.extend(child.box);
+
+    uint32_t masks = 0;
+    uint32_t firstNode = NONE;
+    uint32_t firstTriangle = NONE;
+    for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
+        const WideChild& child = node.slots[slot];
+        if (child.kind == WideChild::Kind::Node) {
+            masks |= 1u << (24 + slot);
+            firstNode = std::min(firstNode, child.first);
+        } else if (child.kind == WideChild::Kind::Leaf) {
+            CHECK(child.count >= 1 && child.count <= BVH_LEAF_TRIANGLES);
+            masks |= ((1u << child.count) - 1u) << (3 * slot);
+            firstTriangle = std::min(firstTriangle, child.first);
+        }
+    }
+
+    std::array<glm::uvec4, shared::BVH_NODE_STRIDE> words = {};
+    words[1] = {masks, firstNode == NONE ? 0 : firstNode, firstTriangle == NONE ? 0 : firstTriangle, 0};
+    if (masks == 0) return words;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Grid grid = fitGrid(double(box.lower[axis]) - margin, double(box.upper[axis]) + margin);
+        words[0][axis] = std::bit_cast<uint32_t>(grid.corner);
+        words[0].w |= uint32_t(grid.exponent) << (8 * axis);
+        for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
+            const WideChild& child = node.slots[slot];
+            if (child.kind == WideChild::Kind::Empty) continue;
+            const double lower = (double(child.box.lower[axis]) - margin - double(grid.corner)) / grid.step();
+            const double upper = (double(child.box.upper[axis]) + margin - double(grid.corner)) / grid.step();
+            const auto put = [&](int plane, uint32_t value) { // planes: lower x y z, upper x y z; two words each
+                const int word = 2 * plane + int(slot / 4);
+                words[size_t(2 + word / 4)][word % 4] |= value << (8 * (slot % 4));
+            };
+            put(axis, quantize(std::floor(lower)));
+            put(3 + axis, quantize(std::ceil(upper)));
+        }
+    }
+    return words;
+}
+
+} // namespace
+
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree)
+{
+    float magnitude = 0;
+    for (const WideChild& child : tree.nodes[0].slots) {
+        if (child.kind == WideChild::Kind::Empty) continue;
+        const glm::vec3 largest = glm::max(glm::abs(child.box.lower), glm::abs(child.box.upper));
+        magnitude = std::max({magnitude, largest.x, largest.y, largest.z});
+    }
+    std::vector<glm::uvec4> table;
+    table.reserve(tree.nodes.size() * shared::BVH_NODE_STRIDE);
+    for (const WideNode& node : tree.nodes) {
+        const auto words = encode(node, float(BOX_MARGIN * magnitude));
+        table.insert(table.end(), words.begin(), words.end());
+    }
+    return table;
+}
+
+std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& input)
+{
+    if (tree.triangles.empty()) return std::vector<glm::uvec4>(shared::BVH_TRIANGLE_STRIDE); // tables are never empty
+    std::vector<glm::uvec4> table;
+    table.reserve(tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE);
+    for (const uint32_t index : tree.triangles) {
+        const bool alpha = !input.needsAlphaTest.empty() && input.needsAlphaTest[index] != 0;
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::vec3 v = input.positions[input.triangles[index].vertices[size_t(corner)]];
+            const uint32_t tag = corner == 0 ? index | (alpha ? shared::BVH_ALPHA_FLAG : 0u) : 0u;
+            table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z),
+                               tag);
+        }
+    }
+    return table;
+}
+
+} // namespace scene

@@ -1,0 +1,81 @@
+#pragma once
+// The stages between Embree's builder and the tables: a binary tree, then an 8-wide one.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/scene/bvh.h"
+
+namespace scene
+{
+
+constexpr uint32_t BVH_WIDTH = 8;
+constexpr uint32_t BVH_LEAF_TRIANGLES = 3;
+constexpr uint32_t BVH_MAX_BINARY_DEPTH =
+    3 * 31; // collapsing by height takes three levels at once: fits BVH_STACK_SIZE
+constexpr float BVH_NODE_COST = 1.0f;
+constexpr float BVH_TRIANGLE_COST = 0.4f; // measured on lavapipe, tests/bench/LOG.md
+
+struct Box {
+    glm::vec3 lower = glm::vec3(std::numeric_limits<float>::infinity());
+    glm::vec3 upper = glm::vec3(-std::numeric_limits<float>::infinity());
+
+    void extend(const Box& other)
+    {
+        lower = glm::min(lower, other.lower);
+        upper = glm::max(upper, other.upper);
+    }
+    float halfArea() const
+    {
+        const glm::vec3 size = upper - lower;
+        return size.x * size.y + size.y * size.z + size.z * size.x;
+    }
+    glm::vec3 center() const { return 0.5f * lower + 0.5f * upper; }
+};
+
+struct BinaryNode {
+    Box box;
+    uint32_t left = 0;     // leaf: the triangle's index
+    uint32_t right = NONE; // leaf: NONE
+
+    bool isLeaf() const { return right == NONE; }
+};
+using BinaryTree = std::vector<BinaryNode>; // children before parents, the root last; empty: no triangle
+
+struct WideChild {
+    enum class Kind : uint8_t { Empty, Node, Leaf };
+    Kind kind = Kind::Empty;
+    uint8_t count = 0;  // leaf: of triangles
+    uint32_t first = 0; // leaf: into WideTree::triangles; node: into WideTree::nodes
+    Box box;
+};
+
+struct WideNode {
+    std::array<WideChild, BVH_WIDTH> slots;
+};
+
+struct WideTree {
+    std::vector<WideNode> nodes;     // the root first; the child nodes of one node contiguous, in order of slots
+    std::vector<uint32_t> triangles; // indices; those of one node contiguous, in order of slots
+    uint32_t levels = 0;
+};
+
+// Ylitie et al. 2017, Section 3.1: the set of binary nodes that gives the cheapest wide tree by the surface area
+// heuristic.
+WideTree collapse(const BinaryTree& tree);
+
+// Expected cost of a ray through the root's box.
+double sahCost(const WideTree& tree);
+
+// The table "Nodes".
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree);
+
+// The table "Triangles".
+std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& input);
+
+} // namespace scene

@@ -1,0 +1,31 @@
+// The 8-wide compressed BVH as both languages see it. Built by engine/scene/bvh.cpp, read by shaders/scene/intersect.glsl.
+// After Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017, with
+// masks instead of per-child meta bytes.
+//
+// Table "Nodes", BVH_NODE_STRIDE elements a node. Child slot s (0..7) lies towards the corner of its node that has
+// x, y, z high where bits 0, 1, 2 of s are set.
+//   0: xyz  the grid's corner p (float bits)
+//      w    biased exponents of the grid's steps: x | y << 8 | z << 16. Box plane = p + byte * step
+//   1: x    masks: bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th triangle, k < 3; none: empty
+//      y    node index of the first child node; the others follow in order of slots
+//      z    record index of the first triangle; the others follow in order of mask bits
+//   2: lower x of slots 0..3, 4..7; lower y    (one byte a slot, lowest byte first)
+//   3: lower z; upper x
+//   4: upper y; upper z
+// Node 0 is the root, its grid covers the scene.
+//
+// Table "Triangles", BVH_TRIANGLE_STRIDE elements a record: xyz of element i is vertex i (float bits); w of element 0 is the
+// triangle's index, with BVH_ALPHA_FLAG where its alpha must be asked.
+#ifndef SHADERS_SHARED_BVH_H
+#define SHADERS_SHARED_BVH_H
+
+#include "types.h"
+
+SHARED_BEGIN
+SHARED_CONST uint BVH_NODE_STRIDE = 5u;
+SHARED_CONST uint BVH_TRIANGLE_STRIDE = 3u;
+SHARED_CONST uint BVH_STACK_SIZE = 32u; // entries; the builder keeps every tree within it
+SHARED_CONST uint BVH_ALPHA_FLAG = 0x80000000u;
+SHARED_END
+
+#endif

@@ -1,0 +1,397 @@
+#include "engine/scene/bvh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/scene/bvh_tree.h"
+#include "shaders/shared/bvh.h"
+
+namespace
+{
+
+using scene::Box;
+using scene::Bvh;
+
+constexpr uint64_t ANY_SIZE = uint64_t{1} << 40;
+
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<scene::Triangle> triangles;
+
+    void add(glm::vec3 a, glm::vec3 b, glm::vec3 c)
+    {
+        const uint32_t first = uint32_t(positions.size());
+        positions.insert(positions.end(), {a, b, c});
+        triangles.push_back({.vertices = {first, first + 1, first + 2}});
+    }
+    std::array<glm::dvec3, 3> corners(uint32_t triangle) const
+    {
+        const auto& v = triangles[triangle].vertices;
+        return {positions[v[0]], positions[v[1]], positions[v[2]]};
+    }
+    Bvh build(uint64_t maxTableBytes = ANY_SIZE) const
+    {
+        return scene::buildBvh({.positions = positions, .triangles = triangles}, maxTableBytes);
+    }
+};
+
+class Random
+{
+  public:
+    explicit Random(uint32_t seed) : engine_(seed) {}
+    float between(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
+    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
+
+  private:
+    std::mt19937 engine_;
+};
+
+// Triangles of all sizes, from long slivers that spatial splits like to specks.
+Mesh soup(uint32_t count, uint32_t seed)
+{
+    Random random(seed);
+    Mesh mesh;
+    for (uint32_t i = 0; i < count; ++i) {
+        const glm::vec3 center = random.point(1.0f);
+        const float size = std::pow(10.0f, random.between(-4.0f, 0.0f));
+        mesh.add(center + random.point(size), center + random.point(size), center + random.point(0.3f * size));
+    }
+    return mesh;
+}
+
+// Reads the tables as shared/bvh.h describes them.
+struct Slot {
+    Box box;
+    std::optional<uint32_t> node;
+    std::vector<uint32_t> triangles;
+};
+
+std::vector<Slot> slotsOf(const Bvh& bvh, uint32_t node)
+{
+    const glm::uvec4* words = &bvh.nodes[size_t{node} * shared::BVH_NODE_STRIDE];
+    const auto byteOf = [&](uint32_t plane, uint32_t slot) {
+        const uint32_t word = 2 * plane + slot / 4;
+        return words[2 + word / 4][int(word % 4)] >> (8 * (slot % 4)) & 255u;
+    };
+    std::vector<Slot> slots;
+    uint32_t nextNode = words[1].y;
+    uint32_t nextRecord = words[1].z;
+    for (uint32_t s = 0; s < 8; ++s) {
+        Slot slot;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float corner = std::bit_cast<float>(words[0][axis]);
+            const double step = std::ldexp(1.0, int(words[0].w >> (8 * axis) & 255u) - 127);
+            slot.box.lower[axis] = float(corner + step * byteOf(uint32_t(axis), s));
+            slot.box.upper[axis] = float(corner + step * byteOf(uint32_t(axis) + 3, s));
+        }
+        if ((words[1].x >> (24 + s) & 1u) != 0) slot.node = nextNode++;
+        for (uint32_t k = 0; k < 3; ++k)
+            if ((words[1].x >> (3 * s + k) & 1u) != 0)
+                slot.triangles.push_back(bvh.triangles[size_t{nextRecord++} * shared::BVH_TRIANGLE_STRIDE].w &
+                                         ~shared::BVH_ALPHA_FLAG);
+        if (slot.node || !slot.triangles.empty()) slots.push_back(slot);
+    }
+    return slots;
+}
+
+template <class Enter, class Visit>
+void walk(const Bvh& bvh, const Enter& enter, const Visit& visit, uint32_t node = 0)
+{
+    for (const Slot& slot : slotsOf(bvh, node)) {
+        if (!enter(slot.box)) continue;
+        for (const uint32_t triangle : slot.triangles) visit(triangle);
+        if (slot.node) walk(bvh, enter, visit, *slot.node);
+    }
+}
+
+bool contains(const Box& box, glm::dvec3 p)
+{
+    return glm::all(glm::lessThanEqual(glm::dvec3(box.lower), p)) &&
+           glm::all(glm::greaterThanEqual(glm::dvec3(box.upper), p));
+}
+
+std::multiset<uint32_t> reachable(const Bvh& bvh)
+{
+    std::multiset<uint32_t> found;
+    walk(
+        bvh, [](const Box&) { return true; }, [&](uint32_t triangle) { found.insert(triangle); });
+    return found;
+}
+
+struct RayD {
+    glm::dvec3 origin, direction;
+};
+
+double hitDistance(const std::array<glm::dvec3, 3>& v, const RayD& ray)
+{
+    const glm::dvec3 e1 = v[1] - v[0], e2 = v[2] - v[0], s = ray.origin - v[0];
+    const glm::dvec3 p = glm::cross(ray.direction, e2), q = glm::cross(s, e1);
+    const double det = glm::dot(e1, p);
+    const double a = glm::dot(s, p) / det, b = glm::dot(ray.direction, q) / det, t = glm::dot(e2, q) / det;
+    const bool hit = a >= 0 && b >= 0 && a + b <= 1 && t >= 0;
+    return hit ? t : std::numeric_limits<double>::infinity();
+}
+
+bool meets(const Box& box, const RayD& ray)
+{
+    double enter = 0, leave = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = (double(box.lower[axis]) - ray.origin[axis]) / ray.direction[axis];
+        const double b = (double(box.upper[axis]) - ray.origin[axis]) / ray.direction[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return enter <= leave;
+}
+
+TEST(Bvh, ReachesEveryTriangleAndEveryNodeOnce)
+{
+    for (const uint32_t count : {1u, 2u, 3u, 4u, 9u, 100u, 20000u}) {
+        const Bvh bvh = soup(count, count).build();
+        const std::multiset<uint32_t> found = reachable(bvh);
+        EXPECT_EQ(found.size(), bvh.stats.triangleRecords);
+        EXPECT_EQ(std::set<uint32_t>(found.begin(), found.end()).size(), count);
+        EXPECT_EQ(*found.rbegin(), count - 1);
+
+        uint64_t nodes = 1;
+        walk(
+            bvh, [&](const Box&) { return true; }, [](uint32_t) {});
+        std::vector<uint32_t> pending = {0};
+        std::set<uint32_t> seen = {0};
+        while (!pending.empty()) {
+            const std::vector<Slot> slots = slotsOf(bvh, pending.back());
+            pending.pop_back();
+            for (const Slot& slot : slots)
+                if (slot.node) {
+                    EXPECT_TRUE(seen.insert(*slot.node).second);
+                    pending.push_back(*slot.node);
+                    ++nodes;
+                }
+        }
+        EXPECT_EQ(nodes, bvh.stats.nodes);
+        EXPECT_EQ(bvh.nodes.size(), nodes * shared::BVH_NODE_STRIDE);
+    }
+}
+
+// Spatial splits cut triangles: each of a triangle's points must lie in some leaf that names it, ancestors' boxes
+// included.
+TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
+{
+    const Mesh mesh = soup(5000, 7);
+    const Bvh bvh = mesh.build();
+    ASSERT_GT(bvh.stats.triangleRecords, mesh.triangles.size()) << "no spatial split: the test says too little";
+    Random random(8);
+    for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        const auto v = mesh.corners(triangle);
+        for (int sample = 0; sample < 8; ++sample) {
+            double a = random.between(0, 1), b = random.between(0, 1);
+            if (a + b > 1) a = 1 - a, b = 1 - b;
+            if (sample == 0) a = b = 0;
+            if (sample == 1) b = 1 - a;
+            const glm::dvec3 point = (1 - a - b) * v[0] + a * v[1] + b * v[2];
+            bool found = false;
+            walk(
+                bvh, [&](const Box& box) { return contains(box, point); },
+                [&](uint32_t candidate) { found |= candidate == triangle; });
+            ASSERT_TRUE(found) << "triangle " << triangle;
+        }
+    }
+}
+
+TEST(Bvh, FindsTheNearestHitThatBruteForceFinds)
+{
+    const Mesh mesh = soup(2000, 3);
+    const Bvh bvh = mesh.build();
+    Random random(4);
+    int hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const RayD ray = {random.point(2.0f), glm::normalize(glm::dvec3(random.point(1.0f)))};
+        double expected = std::numeric_limits<double>::infinity();
+        for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+            expected = std::min(expected, hitDistance(mesh.corners(t), ray));
+        double found = std::numeric_limits<double>::infinity();
+        walk(
+            bvh, [&](const Box& box) { return meets(box, ray); },
+            [&](uint32_t t) { found = std::min(found, hitDistance(mesh.corners(t), ray)); });
+        ASSERT_EQ(found, expected);
+        hits += std::isfinite(found) ? 1 : 0;
+    }
+    EXPECT_GT(hits, 500);
+}
+
+TEST(Bvh, LeavesOutDegenerateAndNonFiniteTriangles)
+{
+    constexpr float INFINITE = std::numeric_limits<float>::infinity();
+    constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+    Mesh mesh;
+    mesh.add({0, 0, 0}, {0, 0, 0}, {1, 0, 0}); // two corners equal
+    mesh.add({0, 0, 0}, {1, 1, 1}, {2, 2, 2}); // on a line
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, NOT_A_NUMBER, 0});
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, INFINITE, 0});
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 3e38f, 0});       // its area is not finite
+    mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});           // good
+    mesh.add({0, 0, 0}, {1e-12f, 0, 0}, {0, 1e-12f, 0}); // small, good
+    const Bvh bvh = mesh.build();
+    EXPECT_EQ(reachable(bvh), (std::multiset<uint32_t>{5, 6}));
+    EXPECT_EQ(bvh.stats.skippedTriangles, 5u);
+}
+
+TEST(Bvh, OfNothingHasOneNodeWithoutChildren)
+{
+    const Bvh bvh = Mesh{}.build();
+    EXPECT_EQ(bvh.nodes.size(), shared::BVH_NODE_STRIDE);
+    EXPECT_EQ(bvh.triangles.size(), shared::BVH_TRIANGLE_STRIDE); // a table cannot be empty
+    EXPECT_TRUE(reachable(bvh).empty());
+    EXPECT_EQ(bvh.stats.sahCost, 0);
+}
+
+TEST(Bvh, MarksTrianglesThatNeedAnAlphaTest)
+{
+    const Mesh mesh = soup(100, 5);
+    std::vector<uint8_t> flags(100);
+    for (size_t i = 0; i < flags.size(); i += 3) flags[i] = 1;
+    const Bvh bvh =
+        scene::buildBvh({.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = flags}, ANY_SIZE);
+    for (size_t record = 0; record < bvh.stats.triangleRecords; ++record) {
+        const uint32_t tag = bvh.triangles[record * shared::BVH_TRIANGLE_STRIDE].w;
+        EXPECT_EQ((tag & shared::BVH_ALPHA_FLAG) != 0, flags[tag & ~shared::BVH_ALPHA_FLAG] != 0);
+    }
+}
+
+TEST(Bvh, OfTrianglesThatCannotBeToldApartStaysShallow)
+{
+    Mesh mesh;
+    for (int i = 0; i < 2000; ++i) mesh.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Bvh bvh = mesh.build();
+    EXPECT_EQ(reachable(bvh).size(), 2000u);
+    EXPECT_LE(bvh.stats.depth, 8u);
+}
+
+// Each triangle half as large and half as far: the best binary tree is a chain.
+TEST(Bvh, OfAGeometricSeriesFitsTheStack)
+{
+    Mesh mesh;
+    for (int i = 0; i < 120; ++i) {
+        const float s = std::ldexp(1.0f, 40 - i);
+        mesh.add({s, 0, 0}, {s, s, 0}, {s, 0, s});
+    }
+    const Bvh bvh = mesh.build();
+    EXPECT_EQ(reachable(bvh).size() - (bvh.stats.triangleRecords - 120), 120u);
+    EXPECT_LE(bvh.stats.depth, shared::BVH_STACK_SIZE);
+}
+
+// A spine whose every node also carries a bush of boxes larger than the rest of the spine: opening the bush pays more
+// than going down the spine, so that the cheapest wide tree is as deep as the spine.
+TEST(BvhCollapse, BoundsTheDepthOfADegenerateTree)
+{
+    constexpr uint32_t BUSH_LEVELS = 7;
+    scene::BinaryTree tree;
+    const auto bush = [&](auto& self, const Box& box, uint32_t levels) -> uint32_t {
+        const uint32_t left = levels == 0 ? uint32_t(tree.size()) : self(self, box, levels - 1);
+        const uint32_t right = levels == 0 ? scene::NONE : self(self, box, levels - 1);
+        tree.push_back({.box = box, .left = left, .right = right});
+        return uint32_t(tree.size() - 1);
+    };
+    uint32_t spine = bush(bush, {glm::vec3(0), glm::vec3(1e-9f)}, BUSH_LEVELS);
+    const uint32_t spineLevels = scene::BVH_MAX_BINARY_DEPTH - BUSH_LEVELS;
+    for (uint32_t level = 1; level <= spineLevels; ++level) {
+        const Box box = {glm::vec3(0), glm::vec3(1e-9f * std::pow(1.5f, float(level)))};
+        const uint32_t left = bush(bush, box, BUSH_LEVELS);
+        tree.push_back({.box = box, .left = left, .right = spine});
+        spine = uint32_t(tree.size() - 1);
+    }
+    const scene::WideTree wide = scene::collapse(tree);
+    EXPECT_EQ(wide.triangles.size(), (spineLevels + 1) << BUSH_LEVELS);
+    EXPECT_LE(wide.levels, shared::BVH_STACK_SIZE);
+}
+
+// The dynamic program must beat every other way to choose wide nodes from the same binary tree.
+TEST(BvhCollapse, IsNoDearerThanRandomCollapses)
+{
+    Random random(11);
+    scene::BinaryTree tree;
+    const auto grow = [&](auto& self, Box box, uint32_t leaves) -> uint32_t {
+        if (leaves == 1) {
+            tree.push_back({.box = box, .left = uint32_t(tree.size())});
+            return uint32_t(tree.size() - 1);
+        }
+        const int axis = int(random.between(0, 2.999f));
+        const float at = glm::mix(box.lower[axis], box.upper[axis], random.between(0.1f, 0.9f));
+        Box low = box, high = box;
+        low.upper[axis] = high.lower[axis] = at;
+        const uint32_t half = 1 + uint32_t(random.between(0, float(leaves - 1) - 0.01f));
+        const uint32_t left = self(self, low, half);
+        const uint32_t right = self(self, high, leaves - half);
+        tree.push_back({.box = box, .left = left, .right = right});
+        return uint32_t(tree.size() - 1);
+    };
+    const uint32_t root = grow(grow, {glm::vec3(0), glm::vec3(1)}, 60);
+
+    // The cost of collapsing by opening random children, in units of area as sahCost has it before division.
+    const auto leavesUnder = [&](auto& self, uint32_t node) -> uint32_t {
+        return tree[node].isLeaf() ? 1 : self(self, tree[node].left) + self(self, tree[node].right);
+    };
+    const auto randomCost = [&](auto& self, uint32_t node) -> double {
+        double cost = scene::BVH_NODE_COST * tree[node].box.halfArea();
+        std::vector<uint32_t> roots = {tree[node].left, tree[node].right};
+        while (roots.size() < 8) {
+            std::vector<size_t> open;
+            for (size_t i = 0; i < roots.size(); ++i)
+                if (!tree[roots[i]].isLeaf()) open.push_back(i);
+            if (open.empty()) break;
+            const size_t pick = open[size_t(random.between(0, float(open.size()) - 0.01f))];
+            roots.push_back(tree[roots[pick]].right);
+            roots[pick] = tree[roots[pick]].left;
+        }
+        for (const uint32_t child : roots) {
+            const uint32_t leaves = leavesUnder(leavesUnder, child);
+            const double asLeaf = scene::BVH_TRIANGLE_COST * double(leaves) * tree[child].box.halfArea();
+            if (tree[child].isLeaf())
+                cost += asLeaf;
+            else if (leaves <= 3)
+                cost += std::min(asLeaf, self(self, child));
+            else
+                cost += self(self, child);
+        }
+        return cost;
+    };
+    const double best = scene::sahCost(scene::collapse(tree)) * tree[root].box.halfArea();
+    double cheapest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 20000; ++i) cheapest = std::min(cheapest, randomCost(randomCost, root));
+    EXPECT_LE(best, cheapest * (1 + 1e-6));
+    EXPECT_GT(best, 0.5 * cheapest) << "the costs do not mean the same";
+}
+
+TEST(Bvh, ThatDoesNotFitIsAnErrorAndSplitsGiveWayFirst)
+{
+    const Mesh mesh = soup(5000, 7);
+    const uint64_t recordBytes = shared::BVH_TRIANGLE_STRIDE * sizeof(glm::uvec4);
+    const Bvh split = mesh.build();
+    ASSERT_GT(split.stats.triangleRecords, mesh.triangles.size());
+    const Bvh tight = mesh.build(mesh.triangles.size() * recordBytes);
+    EXPECT_EQ(tight.stats.triangleRecords, mesh.triangles.size());
+    EXPECT_THROW(mesh.build(mesh.triangles.size() * recordBytes - 1), Error);
+}
+
+TEST(Bvh, ReportsProgressThatGrowsToOne)
+{
+    const Mesh mesh = soup(20000, 2);
+    std::vector<double> reports;
+    scene::buildBvh({.positions = mesh.positions,
+                     .triangles = mesh.triangles,
+                     .progress = [&](double fraction) { reports.push_back(fraction); }},
+                    ANY_SIZE);
+    ASSERT_GE(reports.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
+    EXPECT_EQ(reports.back(), 1.0);
+}
+
+} // namespace

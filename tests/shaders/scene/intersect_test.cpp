@@ -1,0 +1,325 @@
+// Traversal on the device against Embree's own, and what it promises about ties, alpha, limits and odd rays.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <random>
+
+#include <fmt/core.h>
+
+#include "engine/scene/bvh.h"
+#include "engine/scene/gltf_loader.h"
+#include "engine/scene/procedural.h"
+#include "tests/support/gpu_fixture.h"
+#include "tests/support/ray_sets.h"
+
+namespace
+{
+
+constexpr uint32_t NO_HIT = 0x7fffffff; // as the kernel packs it
+constexpr float FAR = std::numeric_limits<float>::max();
+
+struct Hit {
+    uint32_t packed = 0;
+    float u = 0, v = 0, t = 0;
+    uint32_t triangle() const { return packed & 0x7fffffffu; }
+    bool isHit() const { return triangle() != NO_HIT; }
+    bool occluded() const { return packed >> 31 != 0; }
+};
+
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<scene::Triangle> triangles;
+    std::vector<uint8_t> needsAlphaTest; // empty: none
+    std::vector<uint32_t> solid = {1};   // per triangle
+
+    void add(glm::vec3 a, glm::vec3 b, glm::vec3 c)
+    {
+        const uint32_t first = uint32_t(positions.size());
+        positions.insert(positions.end(), {a, b, c});
+        triangles.push_back({.vertices = {first, first + 1, first + 2}});
+    }
+};
+
+class Intersect : public GpuTest
+{
+  protected:
+    std::vector<Hit> trace(const Mesh& mesh, const std::vector<TestRay>& rays)
+    {
+        const scene::Bvh bvh = scene::buildBvh(
+            {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = mesh.needsAlphaTest},
+            device().limits().tableBytes);
+        const gpu::Buffer nodes = upload("nodes", bvh.nodes, gpu::Usage::Table);
+        const gpu::Buffer triangles = upload("triangles", bvh.triangles, gpu::Usage::Table);
+        const gpu::Buffer rayBuffer = upload("rays", rays);
+        std::vector<uint32_t> solidWords = mesh.solid;
+        solidWords.resize(std::max<size_t>(solidWords.size(), 4));
+        const gpu::Buffer solid = upload("solid", solidWords);
+        const gpu::Buffer hits = create<Hit>("hits", rays.size());
+        run({.shader = TEST_SPIRV_DIR "/intersect_test",
+             .constants = {{"HAS_ALPHA", mesh.needsAlphaTest.empty() ? 0u : 1u}},
+             .buffers = {{"Nodes", &nodes},
+                         {"Triangles", &triangles},
+                         {"Rays", &rayBuffer},
+                         {"Solid", &solid},
+                         {"Hits", &hits}},
+             .threads = {uint32_t(rays.size())}});
+        return download<Hit>(hits);
+    }
+};
+
+// ------------------------------------------------------------------------------------------------- agreement with
+// Embree
+
+// One triangle met by one ray in float64: t, and how far inside it the ray passes (smallest barycentric, negative
+// outside).
+struct Exact {
+    double t = 0;
+    double inside = 0;
+};
+
+Exact meet(const Mesh& mesh, uint32_t triangle, const TestRay& ray)
+{
+    const auto& index = mesh.triangles[triangle].vertices;
+    const glm::dvec3 v0 = mesh.positions[index[0]], v1 = mesh.positions[index[1]], v2 = mesh.positions[index[2]];
+    const glm::dvec3 e1 = v1 - v0, e2 = v2 - v0, direction = ray.direction, s = glm::dvec3(ray.origin) - v0;
+    const glm::dvec3 p = glm::cross(direction, e2), q = glm::cross(s, e1);
+    const double determinant = glm::dot(e1, p);
+    const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
+    return {glm::dot(e2, q) / determinant, std::min({u, v, 1 - u - v})};
+}
+
+// Why two tracers may see different triangles: the nearer one's edge is so near that either answer is right to float
+// precision, or both are met at the same distance.
+enum class Reason { Edge, Tie, None };
+
+Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs)
+{
+    constexpr double EDGE = 1e-4; // in barycentrics
+    const bool weHit = ours.isHit(), theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
+    const Exact our = weHit ? meet(mesh, ours.triangle(), ray) : Exact{std::numeric_limits<double>::infinity(), 0};
+    const Exact their =
+        theyHit ? meet(mesh, theirs.hit.primID, ray) : Exact{std::numeric_limits<double>::infinity(), 0};
+    if (weHit && our.inside < -EDGE) return Reason::None; // we claim a hit that is none
+    if (weHit && theyHit && std::abs(our.t - their.t) <= 1e-5 * their.t) return Reason::Tie;
+    const Exact& nearer = our.t < their.t ? our : their;
+    return std::abs(nearer.inside) <= EDGE ? Reason::Edge : Reason::None;
+}
+
+// For each triangle the lowest index of its copies: Sponza has some hundreds, and Embree reports any of them.
+std::vector<uint32_t> firstCopies(const Mesh& mesh)
+{
+    using Key = std::array<float, 9>;
+    std::map<Key, uint32_t> firstOf;
+    std::vector<uint32_t> first;
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        std::array<std::array<float, 3>, 3> corners;
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::vec3 p = mesh.positions[mesh.triangles[i].vertices[k]];
+            corners[k] = {p.x, p.y, p.z};
+        }
+        std::sort(corners.begin(), corners.end());
+        first.push_back(firstOf.emplace(std::bit_cast<Key>(corners), i).first->second);
+    }
+    return first;
+}
+
+class IntersectAgreement : public Intersect
+{
+  protected:
+    void expectAgreement(const scene::Scene& scene, uint32_t size)
+    {
+        const Mesh mesh = {.positions = scene.positions, .triangles = scene.triangles};
+        const EmbreeScene embree(scene.positions, scene.triangles);
+        const RaySets sets = makeRaySets(scene, embree, size);
+        std::vector<TestRay> rays = sets.camera;
+        rays.insert(rays.end(), sets.bounce.begin(), sets.bounce.end());
+        rays.insert(rays.end(), sets.shadow2.begin(), sets.shadow2.end());
+        rays.insert(rays.end(), sets.bounce2.begin(), sets.bounce2.end());
+        const std::vector<Hit> hits = trace(mesh, rays);
+        const std::vector<uint32_t> firstCopy = firstCopies(mesh);
+        float magnitude = 0;
+        for (const glm::vec3& p : scene.positions)
+            magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+
+        size_t hitCount = 0, edges = 0, ties = 0, roundings = 0, unexplained = 0, occlusionDiffers = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const RTCRayHit theirs = embree.intersect(rays[i]);
+            occlusionDiffers += hits[i].occluded() != hits[i].isHit() ? 1 : 0;
+            const bool theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
+            const uint32_t primitive = theyHit ? firstCopy[theirs.hit.primID] : NO_HIT;
+            hitCount += primitive != NO_HIT ? 1 : 0;
+            if (primitive == hits[i].triangle()) {
+                if (primitive == NO_HIT) continue;
+                const double difference = std::abs(double(hits[i].t) - theirs.ray.tfar);
+                if (difference <= 1e-4 * theirs.ray.tfar) continue;
+                // A hit so near that the rounding of coordinates is a larger part of t.
+                (difference <= 1e-6 * magnitude ? roundings : unexplained) += 1;
+                continue;
+            }
+            switch (reasonFor(mesh, rays[i], hits[i], theirs)) {
+            case Reason::Edge: ++edges; break;
+            case Reason::Tie: ++ties; break;
+            case Reason::None: ++unexplained; break;
+            }
+        }
+        const double agreement = 1.0 - double(edges + ties + roundings + unexplained) / double(rays.size());
+        fmt::print("{} rays, {} hits, agreement {:.6f}; differing: {} at edges, {} ties, {} by rounding at the origin, "
+                   "{} unexplained\n",
+                   rays.size(), hitCount, agreement, edges, ties, roundings, unexplained);
+        EXPECT_GT(hitCount, rays.size() / 2);
+        EXPECT_GE(agreement, 0.9999);
+        EXPECT_EQ(unexplained, 0u);
+        EXPECT_EQ(occlusionDiffers, 0u);
+    }
+};
+
+TEST_F(IntersectAgreement, WithEmbreeInTheHall)
+{
+    expectAgreement(scene::makeHall(), 256);
+}
+
+TEST_F(IntersectAgreement, WithEmbreeInSponza)
+{
+    const std::filesystem::path file =
+        std::filesystem::path(TRICHROME_SOURCE_DIR) / "../shared/scenes/sponza/sponza_curtain_spots.gltf";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "NOT TESTED: " << file << " is missing";
+    const char* size = std::getenv("TRICHROME_TEST_RAYS"); // 512: the million rays of tests/bench/LOG.md
+    expectAgreement(scene::loadGltf(file), size ? uint32_t(std::atoi(size)) : 256u);
+}
+
+// --------------------------------------------------------------------------------------------------------------
+// promises
+
+TEST_F(Intersect, OfNothingIsNothing)
+{
+    const std::vector<Hit> hits = trace({}, {{{0, 0, 0}, FAR, {0, 0, 1}}, {{1e6f, 0, 0}, FAR, {-1, 0, 0}}});
+    for (const Hit& hit : hits) EXPECT_FALSE(hit.isHit() || hit.occluded());
+}
+
+TEST_F(Intersect, GivesPositionByBarycentricsAndDistance)
+{
+    Mesh mesh;
+    mesh.add({0, 0, 2}, {1, 0, 2}, {0, 1, 2});
+    const Hit hit = trace(mesh, {{{0.25f, 0.5f, 0}, FAR, {0, 0, 1}}})[0];
+    EXPECT_EQ(hit.triangle(), 0u);
+    EXPECT_NEAR(hit.u, 0.25f, 1e-6f);
+    EXPECT_NEAR(hit.v, 0.5f, 1e-6f);
+    EXPECT_NEAR(hit.t, 2.0f, 1e-6f);
+}
+
+TEST_F(Intersect, EndsAtTMax)
+{
+    Mesh mesh;
+    mesh.add({-1, -1, 2}, {1, -1, 2}, {0, 1, 2});
+    const std::vector<Hit> hits = trace(mesh, {{{0, 0, 0}, 1.999f, {0, 0, 1}},
+                                               {{0, 0, 0}, 2.001f, {0, 0, 1}},
+                                               {{0, 0, -1e4f}, 1e4f + 1.9f, {0, 0, 1}},
+                                               {{0, 0, -1e4f}, 1e4f + 2.1f, {0, 0, 1}}});
+    for (size_t i = 0; i < hits.size(); ++i) {
+        EXPECT_EQ(hits[i].isHit(), i % 2 == 1) << i;
+        EXPECT_EQ(hits[i].occluded(), i % 2 == 1) << i;
+    }
+}
+
+// The same triangles in another order are another tree: the lowest index must win in both.
+TEST_F(Intersect, ResolvesTiesToTheLowestIndex)
+{
+    constexpr uint32_t LAYERS = 40;
+    std::mt19937 engine(5);
+    Mesh mesh;
+    for (uint32_t i = 0; i < LAYERS; ++i) { // one plane, overlapping triangles
+        std::uniform_real_distribution<float> jitter(-0.2f, 0.2f);
+        mesh.add({-2 + jitter(engine), -2, 1}, {2 + jitter(engine), -2, 1}, {jitter(engine), 2 + jitter(engine), 1});
+    }
+    for (uint32_t i = 0; i < LAYERS; ++i) mesh.triangles.push_back(mesh.triangles[i]); // and each of them again
+    std::vector<TestRay> rays;
+    std::uniform_real_distribution<float> inside(-0.5f, 0.5f);
+    for (int i = 0; i < 1000; ++i) rays.push_back({{inside(engine), inside(engine), -1}, FAR, {0, 0, 1}});
+    const std::vector<Hit> hits = trace(mesh, rays);
+    for (const Hit& hit : hits) EXPECT_EQ(hit.triangle(), 0u);
+
+    std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), engine);
+    for (const Hit& hit : trace(mesh, rays)) EXPECT_EQ(hit.triangle(), 0u);
+}
+
+// Alpha-tested layers are passed one by one within a single traversal. A driver that cuts loops short would lose the
+// wall behind them: lavapipe 22.3 leaves every loop after 65 535 iterations of all loops of an invocation together.
+TEST_F(Intersect, PassesThroughManyTransparentLayers)
+{
+    constexpr uint32_t LAYERS = 12000;
+    Mesh mesh;
+    for (uint32_t i = 0; i <= LAYERS; ++i) {
+        const float z = 1 + 1e-3f * float(i);
+        mesh.add({-1, -1, z}, {1, -1, z}, {0, 1, z});
+    }
+    mesh.needsAlphaTest.assign(LAYERS + 1, 1);
+    mesh.needsAlphaTest.back() = 0;
+    mesh.solid.assign(LAYERS + 1, 0);
+    mesh.solid[LAYERS] = 0; // not asked: its flag is not set
+    std::vector<TestRay> rays = {{{0, 0, 0}, FAR, {0, 0, 1}}, {{0, 0, 100}, FAR, {0, 0, -1}}};
+    for (const Hit& hit : trace(mesh, rays)) {
+        EXPECT_EQ(hit.triangle(), LAYERS);
+        EXPECT_TRUE(hit.occluded());
+    }
+    mesh.solid[700] = 1;
+    const std::vector<Hit> hits = trace(mesh, rays);
+    EXPECT_EQ(hits[0].triangle(), 700u);
+    EXPECT_EQ(hits[1].triangle(), LAYERS);
+    rays[0].tMax = 1.5f;
+    EXPECT_FALSE(trace(mesh, rays)[0].occluded());
+}
+
+TEST_F(Intersect, OfManyEqualTrianglesEnds)
+{
+    Mesh mesh;
+    for (int i = 0; i < 2000; ++i) mesh.add({0, 0, 1}, {1, 0, 1}, {0, 1, 1});
+    const std::vector<Hit> hits = trace(mesh, {{{0.2f, 0.2f, 0}, FAR, {0, 0, 1}}, {{0.9f, 0.9f, 0}, FAR, {0, 0, 1}}});
+    EXPECT_EQ(hits[0].triangle(), 0u);
+    EXPECT_FALSE(hits[1].isHit());
+}
+
+// Directions with zero components, of either sign, also in the planes of boxes and of triangles' edges.
+TEST_F(Intersect, MeetsAGridAlongItsAxes)
+{
+    constexpr int SIZE = 16;
+    std::vector<TestRay> rays;
+    for (int axis = 0; axis < 3; ++axis) {
+        Mesh mesh;
+        rays.clear();
+        const auto at = [&](int i, int j, float depth) {
+            glm::vec3 p;
+            p[axis] = depth;
+            p[(axis + 1) % 3] = float(i) / SIZE;
+            p[(axis + 2) % 3] = float(j) / SIZE;
+            return p;
+        };
+        for (int i = 0; i < SIZE; ++i)
+            for (int j = 0; j < SIZE; ++j) {
+                mesh.add(at(i, j, 0), at(i + 1, j, 0), at(i, j + 1, 0));
+                mesh.add(at(i + 1, j, 0), at(i + 1, j + 1, 0), at(i, j + 1, 0));
+            }
+        for (const float zero : {0.0f, -0.0f})
+            for (const float side : {-1.0f, 1.0f})
+                for (int i = 0; i <= 2 * SIZE; ++i)
+                    for (int j = 0; j <= 2 * SIZE; ++j) {
+                        TestRay ray = {0.5f * at(i, j, 2 * side), FAR, glm::vec3(zero)};
+                        ray.direction[axis] = -side;
+                        rays.push_back(ray); // through cells, edges and vertices, the mesh's border included
+                    }
+        const std::vector<Hit> hits = trace(mesh, rays);
+        for (size_t i = 0; i < hits.size(); ++i) {
+            ASSERT_TRUE(hits[i].isHit() && hits[i].occluded()) << "axis " << axis << " ray " << i;
+            ASSERT_FLOAT_EQ(hits[i].t, 1.0f);
+        }
+        for (TestRay& ray : rays) std::swap(ray.direction[axis], ray.direction[(axis + 1) % 3]); // beside the plane
+        for (const Hit& hit : trace(mesh, rays)) ASSERT_FALSE(hit.isHit() || hit.occluded());
+    }
+}
+
+} // namespace
