@@ -1,8 +1,11 @@
 #include "passes/renderer.h"
 
+#include "engine/base/check.h"
 #include "passes/camera_choice.h"
+#include "passes/estimator.h"
 
 #include <cmath>
+#include <cstring>
 
 namespace passes
 {
@@ -35,18 +38,25 @@ shared::CameraUniform makeCameraUniform(const scene::Camera& camera, double leng
 }
 
 constexpr const char* RAY_NAMES[] = {"primary", "bounce", "shadow", "replay", "reconnection"};
+constexpr const char* SHIFT_NAMES[] = {"done", "ended", "joined-earlier", "not-joinable", "hidden", "dark"};
 constexpr const char* STAGE_NAMES[] = {"primary",       "path_trace",     "canonical", "temporal",
                                        "spatial_trace", "spatial_gather", "accumulate"};
-static_assert(std::size(RAY_NAMES) == shared::COUNTER_NONFINITE && std::size(STAGE_NAMES) == shared::STAGE_COUNT);
+static_assert(std::size(RAY_NAMES) == shared::RAY_KINDS && std::size(SHIFT_NAMES) == shared::SHIFT_OUTCOMES &&
+              std::size(STAGE_NAMES) == shared::STAGE_COUNT);
+
+// Bytes of one reservoir in one of the two sets (shaders/restir/reservoir_store.glsl).
+constexpr uint64_t RESERVOIR_WORD_BYTES = 2 * sizeof(glm::uvec4);
+constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 
 } // namespace
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
                    const std::function<void(double)>& bvhProgress, Features features)
-    : device_(device), settings_(settings)
+    : device_(device), settings_(settings), features_(features)
 {
-    requireImplemented(settings);
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
+    orthographic_ = camera.orthographic;
+    createBuffers(); // first: a picture too large for the device is said so before a long build
 
     const auto start = std::chrono::steady_clock::now();
     const scene::SceneTables tables = scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress);
@@ -58,56 +68,133 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
     stats_.sceneBytes = scene_->bytes();
     lengthScale_ = tables.lengthScale;
     radianceScale_ = tables.radianceScale;
-    variant_ = features == Features::Needed ? makeVariant(tables.features, settings, camera.orthographic)
-                                            : fullVariant(settings, camera.orthographic);
-    stats_.variant = describe(variant_);
+    sceneFeatures_ = tables.features;
 
-    const uint64_t pixels = uint64_t{settings.width} * settings.height;
-    const auto perPixel = [&](const char* label, uint64_t bytes) {
-        stats_.bytesPerPixel += double(bytes);
-        return device.createBuffer({.label = label, .size = pixels * bytes, .setting = "--size"});
-    };
-    frameUniform_ =
-        device.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
-    counters_ = device.createBuffer({.label = "Counters", .size = shared::COUNTER_COUNT * 2 * sizeof(uint32_t)});
-    surfaces_ = perPixel("Surfaces", 16);
-    color_ = perPixel("Color", 16);
-    film_ = perPixel("Film", 32);
-
-    frame_.width = settings.width;
-    frame_.height = settings.height;
-    const uint64_t key = mix(settings.seed);
-    frame_.key0 = uint32_t(key);
-    frame_.key1 = uint32_t(key >> 32);
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
     createStages();
 }
 
+void Renderer::createBuffers()
+{
+    const uint64_t pixels = uint64_t{settings_.width} * settings_.height;
+    stats_.bytesPerPixel = 0;
+    const auto perPixel = [&](const char* label, uint64_t bytes, const char* setting = "--size") {
+        stats_.bytesPerPixel += double(bytes);
+        // Stages declare all their buffers; what this method does not use is 16 bytes long.
+        return device_.createBuffer({.label = label, .size = std::max<uint64_t>(pixels * bytes, 16), .setting = setting});
+    };
+    frameUniform_ =
+        device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
+    counters_ = device_.createBuffer({.label = "Counters", .size = shared::COUNTER_COUNT * 2 * sizeof(uint32_t)});
+    surfaces_ = perPixel("Surfaces", 2 * 16);
+    color_ = perPixel("Color", 16);
+    film_ = perPixel("Film", 32);
+
+    const bool resamples = settings_.method != Method::Pt;
+    const uint64_t count = resamples ? estimatorOf(settings_.method).target.size() : 0;
+    const uint64_t pathBytes = settings_.shift == Shift::Replay ? 0 : RESERVOIR_PATH_BYTES;
+    const uint64_t words = resamples ? count * RESERVOIR_WORD_BYTES + sizeof(uint32_t) : 0;
+    stats_.reservoirBytes = resamples ? 2 * double(words + count * pathBytes) / double(count) : 0;
+    reservoirs_ = perPixel("Reservoirs", words + (resamples ? 16 : 0)); // 16: confidences, four to a row, end in a whole row
+    history_ = perPixel("History", words + (resamples ? 16 : 0));
+    reservoirPaths_ = perPixel("ReservoirPaths", count * pathBytes, "--size or --shift");
+    historyPaths_ = perPixel("HistoryPaths", count * pathBytes, "--size or --shift");
+    neighbors_ = perPixel("Neighbors", resamples ? settings_.spatial * sizeof(uint32_t) : 0, "--size or --spatial");
+    shifted_ = perPixel("Shifted", count * settings_.spatial * sizeof(glm::vec4), "--size or --spatial");
+
+    frame_.width = settings_.width;
+    frame_.height = settings_.height;
+    const uint64_t key = mix(settings_.seed);
+    frame_.key0 = uint32_t(key);
+    frame_.key1 = uint32_t(key >> 32);
+    if (resamples) {
+        const Estimator& estimator = estimatorOf(settings_.method);
+        for (size_t c = 0; c < count; ++c) {
+            frame_.target[c] = glm::vec4(estimator.target[c], 0);
+            frame_.resolve[c] = glm::vec4(estimator.resolve[c], 0);
+        }
+    }
+    tune();
+}
+
+void Renderer::tune()
+{
+    frame_.maxConfidence = settings_.maxConfidence;
+    frame_.neighborCount = settings_.spatial;
+    frame_.neighborRadius = settings_.spatialRadius;
+}
+
 void Renderer::createStages()
 {
+    variant_ = features_ == Features::Needed ? makeVariant(sceneFeatures_, settings_, orthographic_)
+                                             : fullVariant(settings_, orthographic_);
+    stats_.variant = describe(variant_);
     const auto start = std::chrono::steady_clock::now();
     const StageContext context{.device = device_,
                                .scene = *scene_,
                                .variant = variant_,
                                .frame = {{"Frame", &frameUniform_}, {"Counters", &counters_}}};
-    primary_ = std::make_unique<Stage>(context, "primary", NamedBuffers{{"Surfaces", &surfaces_}});
-    pathTrace_ = std::make_unique<Stage>(context, "path_trace", NamedBuffers{{"Surfaces", &surfaces_}, {"Color", &color_}});
-    accumulate_ = std::make_unique<Stage>(context, "accumulate", NamedBuffers{{"Color", &color_}, {"Film", &film_}});
+    const NamedBuffers all = {{"Surfaces", &surfaces_},     {"Color", &color_},
+                              {"Film", &film_},             {"Reservoirs", &reservoirs_},
+                              {"History", &history_},       {"ReservoirPaths", &reservoirPaths_},
+                              {"Neighbors", &neighbors_},   {"HistoryPaths", &historyPaths_},
+                              {"Shifted", &shifted_}};
+    const auto stage = [&](const char* name) { return std::make_unique<Stage>(context, name, all); };
+    primary_ = stage("primary");
+    accumulate_ = stage("accumulate");
+    pathTrace_ = canonical_ = temporal_ = spatialTrace_ = spatialGather_ = nullptr;
+    if (settings_.method == Method::Pt) {
+        pathTrace_ = stage("path_trace");
+    } else {
+        canonical_ = stage("canonical");
+        if (settings_.temporal) temporal_ = stage("temporal");
+        if (settings_.spatial > 0) spatialTrace_ = stage("spatial_trace");
+        spatialGather_ = stage("spatial_gather");
+    }
     stats_.compileSeconds = secondsSince(start);
 }
 
+void Renderer::apply(const Settings& settings)
+{
+    Settings tuned = settings_;
+    tuned.maxConfidence = settings.maxConfidence;
+    tuned.spatialRadius = settings.spatialRadius;
+    tuned.frames = settings.frames;
+    tuned.seconds = settings.seconds;
+    tuned.average = settings.average;
+    const bool same = tuned == settings;
+    wait();
+    settings_ = settings;
+    if (same) {
+        tune();
+        return;
+    }
+    createBuffers();
+    createStages();
+    reset();
+}
+
+// The paper's four stages, between what a pixel sees and what the film keeps.
 void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
 {
     const gpu::Threads pixels = {settings_.width, settings_.height};
     primary_->encode(encoder, pixels);
-    pathTrace_->encode(encoder, pixels);
+    if (pathTrace_) pathTrace_->encode(encoder, pixels);
+    if (canonical_) canonical_->encode(encoder, pixels);
+    if (temporal_ && historyFrames_ > 0) temporal_->encode(encoder, pixels);
+    if (spatialTrace_) spatialTrace_->encode(encoder, {pixels.x, pixels.y, settings_.spatial});
+    if (spatialGather_) spatialGather_->encode(encoder, pixels);
     accumulate_->encode(encoder, pixels);
 }
 
 void Renderer::renderFrame()
 {
     frame_.frame = uint32_t(frameCount_);
+    frame_.slice = uint32_t(frameCount_ & 1);
+    // The same camera ray sees the same point: shifts between the two frames are identities, and left out.
+    frame_.sameView = features_ == Features::Needed && settings_.pixelFilter == PixelFilter::Center &&
+                      std::memcmp(&frame_.camera, &frame_.previousCamera, sizeof(frame_.camera)) == 0;
     device_.queue().writeValue(frameUniform_, frame_);
     gpu::CommandEncoder encoder = device_.createCommandEncoder("frame");
     if (frameCount_ == 0) {
@@ -118,6 +205,7 @@ void Renderer::renderFrame()
     inFlight_.push_back(device_.queue().submit(std::move(encoder)));
     frame_.previousCamera = frame_.camera;
     ++frameCount_;
+    ++historyFrames_;
     if (inFlight_.size() > 2) {
         device_.queue().wait(inFlight_.front());
         inFlight_.pop_front();
@@ -125,7 +213,15 @@ void Renderer::renderFrame()
     }
 }
 
-void Renderer::reset() { frameCount_ = 0; }
+void Renderer::reset()
+{
+    wait();
+    frameCount_ = 0;
+    historyFrames_ = 0;
+    frame_.previousCamera = frame_.camera;
+    milliseconds_.clear();
+    timedFrames_ = 0;
+}
 
 void Renderer::setCamera(const scene::Camera& camera)
 {
@@ -176,6 +272,7 @@ RenderStats Renderer::stats()
     const std::vector<uint32_t> words = device_.queue().readAs<uint32_t>(counters_);
     const auto counter = [&](size_t i) { return uint64_t{words[2 * i]} | uint64_t{words[2 * i + 1]} << 32; };
     for (size_t i = 0; i < std::size(RAY_NAMES); ++i) stats.rays[RAY_NAMES[i]] = counter(i);
+    for (size_t i = 0; i < std::size(SHIFT_NAMES); ++i) stats.shifts[SHIFT_NAMES[i]] = counter(shared::COUNTER_SHIFT + i);
     for (size_t i = 0; i < std::size(STAGE_NAMES); ++i)
         stats.nonFinite[STAGE_NAMES[i]] = counter(shared::COUNTER_NONFINITE + i);
     stats.memoryBytes = device_.allocatedBytes();

@@ -23,6 +23,7 @@ namespace passes
 struct RenderStats {
     std::map<std::string, double> stageMilliseconds; // device time per frame, by stage
     std::map<std::string, uint64_t> rays;            // since the last reset: primary, bounce, shadow, replay, reconnection
+    std::map<std::string, uint64_t> shifts;          // by outcome, since the last reset
     std::map<std::string, uint64_t> nonFinite;       // values found not finite (and counted as 0), by stage
     double tablesSeconds = 0;                        // scene -> tables, without the BVH
     double bvhSeconds = 0;
@@ -31,14 +32,16 @@ struct RenderStats {
     scene::LightCounts lights;
     uint64_t memoryBytes = 0; // of all buffers of the device
     uint64_t sceneBytes = 0;
-    double bytesPerPixel = 0;
+    double bytesPerPixel = 0;    // of all buffers that grow with the picture
+    double reservoirBytes = 0;   // of those: per reservoir and pixel, both sets
     std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
 };
 
 class Renderer
 {
   public:
-    // What to compile in. Everything gives the same picture as Needed, slower: for tests and benchmarks.
+    // What to leave out. Everything compiles all features and replays even what cannot have changed; it gives the same
+    // picture as Needed, slower: for tests and benchmarks.
     enum class Features { Needed, Everything };
 
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
@@ -47,6 +50,10 @@ class Renderer
     void renderFrame();                // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
     void reset();                      // forgets all frames
+    // From the next frame on. M_c, radius, temporal and number of neighbors take effect at once and keep history and film;
+    // anything else compiles anew and starts over. The scene and its environment stay.
+    void apply(const Settings& settings);
+    const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
     void wait();                       // until all submitted frames are done
 
@@ -56,23 +63,30 @@ class Renderer
     RenderStats stats();      // waits
 
   private:
+    void createBuffers();
     void createStages();
+    void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
 
     gpu::Device& device_;
     Settings settings_;
+    Features features_;
+    scene::SceneFeatures sceneFeatures_;
+    bool orthographic_ = false;
     double lengthScale_ = 1, radianceScale_ = 1;
     Variant variant_;
     RenderStats stats_;
     shared::FrameUniform frame_ = {};
     uint64_t frameCount_ = 0, timedFrames_ = 0;
+    uint64_t historyFrames_ = 0; // frames of reservoirs that the next frame may reuse
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
     std::unique_ptr<scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
-    std::unique_ptr<Stage> primary_, pathTrace_, accumulate_;
+    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_;
+    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporal_, spatialTrace_, spatialGather_, accumulate_;
 };
 
 } // namespace passes

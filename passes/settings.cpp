@@ -20,9 +20,9 @@ namespace
 using Json = nlohmann::ordered_json;
 
 // ---- the words of each enumeration, in the order of its values ----
-constexpr std::array<const char*, 3> wordsOf(Method)
+constexpr std::array<const char*, 4> wordsOf(Method)
 {
-    return {"pt", "restir-pt", "rgb-restir"};
+    return {"pt", "restir-pt", "rgb-restir", "grouped-restir"};
 }
 constexpr std::array<const char*, 3> wordsOf(Shift)
 {
@@ -271,12 +271,6 @@ std::string hash(const Settings& settings)
         eat(value);
     }
     return fmt::format("{:016x}", state);
-}
-
-void requireImplemented(const Settings& settings)
-{
-    if (settings.method != Method::Pt)
-        throw Error("Method \"{}\" is not built yet; there is: pt.", textOf(settings.method));
 }
 
 } // namespace passes

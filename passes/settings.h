@@ -13,7 +13,7 @@
 namespace passes
 {
 
-enum class Method : uint32_t { Pt, RestirPt, RgbRestir };
+enum class Method : uint32_t { Pt, RestirPt, RgbRestir, GroupedRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
 enum class PixelFilter : uint32_t { Center, Box };
 
@@ -66,13 +66,13 @@ template <class AnySettings, class Visitor>
 void visitSettings(AnySettings& s, Visitor&& visit)
 {
     // clang-format off
-    visit(Knob{"method", 0, 0, "", "How light is computed. pt: plain path tracing; restir-pt: ReSTIR PT, one reservoir, luminance target; rgb-restir: one reservoir per channel. All unbiased."}, s.method);
+    visit(Knob{"method", 0, 0, "", "How light is computed. pt: plain path tracing; restir-pt: ReSTIR PT, one reservoir, luminance target; rgb-restir: one reservoir per channel; grouped-restir: one for red and green, one for blue. All unbiased."}, s.method);
     visit(Knob{"shift", 0, 0, "", "ReSTIR's shift map: how a path moves to another pixel. Unbiased; replay costs the most rays."}, s.shift);
     visit(Knob{"max-confidence", 1, 1048576, "frames", "M_c of ReSTIR: the most that history may count against a new frame. Larger: less noise, more correlation between frames. Unbiased, free."}, s.maxConfidence);
     visit(Knob{"temporal", 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
     visit(Knob{"spatial", 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
     visit(Knob{"spatial-radius", 1, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be. Unbiased, free."}, s.spatialRadius);
-    visit(Knob{"max-bounces", 0, 64, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
+    visit(Knob{"max-bounces", 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
     visit(Knob{"pixel-filter", 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
     visit(Knob{"size", 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});
     visit(Knob{"camera", 0, 0, "", "Name or index of one of the scene's cameras; empty: the first."}, s.camera);
@@ -107,8 +107,5 @@ void apply(Settings& settings, const nlohmann::ordered_json& preset);
 
 // 16 hexadecimal digits; equal exactly when (up to collision) all settings are.
 std::string hash(const Settings& settings);
-
-// The one place that knows what is not built yet. Throws Error naming the option.
-void requireImplemented(const Settings& settings);
 
 } // namespace passes

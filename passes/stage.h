@@ -26,7 +26,8 @@ struct StageContext {
 class Stage
 {
   public:
-    // `name` is the shader's, and the label of its timings; `buffers` are set 2, exactly as the shader names them.
+    // `name` is the shader's, and the label of its timings; `buffers` hold set 2; those that the
+    // shader does not name are left alone.
     Stage(const StageContext& context, const std::string& name, const NamedBuffers& buffers);
 
     void encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const;

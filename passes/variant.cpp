@@ -1,5 +1,7 @@
 #include "passes/variant.h"
 
+#include "passes/estimator.h"
+
 #include <type_traits>
 
 namespace passes
@@ -17,12 +19,19 @@ std::string text(T value)
 
 } // namespace
 
+static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY && uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
+              uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
+
 Variant fullVariant(const Settings& settings, bool orthographic)
 {
     Variant v;
     v.MAX_BOUNCES = settings.maxBounces;
     v.BOX_FILTER = settings.pixelFilter == PixelFilter::Box;
     v.ORTHOGRAPHIC = orthographic;
+    if (settings.method != Method::Pt) {
+        v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
+        v.SHIFT_MAP = uint32_t(settings.shift);
+    }
     return v;
 }
 

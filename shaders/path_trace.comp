@@ -6,9 +6,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
 layout(set = SET_PASS, binding = 1, std430) writeonly buffer Color { vec4 color[]; };
 
-vec3 radiance = vec3(0.0);
-void emit(uint leaf, vec3 f) { radiance += finiteOrCounted(f, STAGE_PATH_TRACE); }
+#include "path/primary_hit.glsl"
 #include "path/walk.glsl"
+
+vec3 radiance = vec3(0.0);
+bool visit(Vertex x) { return true; }
+bool wants(uint leaf) { return true; }
+bool goesOn(uint k) { return k < MAX_BOUNCES || HAS_REACHABLE_LIGHT; }
+void emit(uint leaf, vec3 f, Ending e) { radiance += finiteOrCounted(f, STAGE_PATH_TRACE); }
 
 void main()
 {
@@ -16,19 +21,10 @@ void main()
     if (pixel.x >= frame.width || pixel.y >= frame.height) return;
     uint index = pixel.y * frame.width + pixel.x;
 
-    uvec4 hit = surfaces[index];
-    PathSeed seed = PathSeed(frame.frame, index);
-    if (hit.x == NO_HIT) {
-        uint alphaSeed;
-        radiance = loadEnvironment(pixelRay(pixel, alphaSeed).direction).rgb;
-    } else {
-        vec2 barycentric = uintBitsToFloat(hit.yz);
-        vec3 wo = towardsCamera(frame.camera, hitPosition(hit.x, barycentric));
-        Surface s = loadSurface(hit.x, barycentric, wo);
-        radiance = finiteOrCounted(s.emission, STAGE_PATH_TRACE);
-        walk(s, wo, seed, MAX_BOUNCES);
-    }
+    PrimaryHit hit = loadPrimaryHit(pixel);
+    radiance = finiteOrCounted(hit.emission, STAGE_PATH_TRACE);
+    if (hit.seen) walk(hit.s, hit.wo, PathSeed(frame.frame, index));
     color[index] = vec4(radiance, 0.0);
-    addToCounter(COUNTER_BOUNCE, bounceRays);
+    addToCounter(COUNTER_BOUNCE, tracedRays);
     addToCounter(COUNTER_SHADOW, shadowRays);
 }

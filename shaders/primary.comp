@@ -3,7 +3,7 @@
 // Camera rays: which surface point each pixel sees. Everything else about it is recomputed from the stored hit.
 #include "scene/camera.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) writeonly buffer Surfaces { uvec4 surfaces[]; }; // triangle, barycentrics, 0
+layout(set = SET_PASS, binding = 0, std430) writeonly buffer Surfaces { uvec4 surfaces[]; }; // two frames: triangle, barycentrics, 0
 
 void main()
 {
@@ -14,6 +14,6 @@ void main()
     uint alphaSeed;
     Ray ray = pixelRay(pixel, alphaSeed);
     Hit hit = closestHit(ray, alphaSeed);
-    surfaces[index] = uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u);
+    surfaces[frame.slice * frame.width * frame.height + index] = uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u);
     addToCounter(COUNTER_PRIMARY, 1u);
 }

@@ -32,4 +32,8 @@ uvec4 randomBlock(PathSeed seed, uint block, uvec2 key)
 // [0, 1), never 1: 24 bits.
 float unitFloat(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8; }
 
+// [0, 1) with 24 significant bits however small: for decisions of small probability. (The largest 129 values round to 1:
+// they are one step below it.)
+float decisionFloat(uint bits) { return min(float(bits) * 2.3283064365386963e-10, 0.99999994); }
+
 #endif

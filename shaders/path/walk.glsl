@@ -1,23 +1,49 @@
-// The one path walker. It traces the path tree of one seed from a primary hit and reports every light-carrying path to
-//     void emit(uint leaf, vec3 f);
-// which the including stage defines above the include. f is the path's MIS-weighted contribution over its density: the
-// integrand in primary sample space. Sampling, replay and reference differ only in what emit() does.
+// The one path walker. It traces the path tree of one seed from a primary hit. Sampling, replay and plain path tracing
+// differ only in the four functions that the including stage defines: visit, wants, goesOn, emit.
 #ifndef SHADERS_PATH_WALK_GLSL
 #define SHADERS_PATH_WALK_GLSL
 
+#include "path/leaf.glsl"
 #include "scene/bsdf.glsl"
 #include "scene/camera.glsl"
 #include "scene/lights.glsl"
 
-// A leaf of the path tree: the number k of scattering events, and how the light was found.
-const uint BY_LIGHT = 0u;   // next-event estimation at x_k
-const uint BY_SCATTER = 1u; // the scattered ray of x_k met an emitter or the environment
-uint makeLeaf(uint k, uint technique) { return (k << 1u) | technique; }
-
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
 
-uint bounceRays = 0u;
+// x_k, about to scatter.
+struct Vertex {
+    uint k;
+    Surface s;
+    Bsdf bsdf;
+    vec3 throughput; // of the scattering events before x_k, over their densities
+};
+
+// A scattered ray, x_k -> x_(k+1).
+struct Segment {
+    Scatter scatter;
+    Hit hit;
+    float distance; // scaled; RAY_MAX: the environment
+    float geometry; // |cos| / distance^2 at x_(k+1): area over solid angle; 1 for the environment
+};
+
+// The last step of a path, from x_k to light.
+struct Ending {
+    vec3 direction; // unit
+    vec3 radiance;  // from there; for Dirac lights over the density
+    vec3 weighted;  // by what the throughput is multiplied
+    float lightPdf; // of next-event estimation, solid angle at x_k; 0 where it cannot find this light; -1: a Dirac light
+};
+
+bool visit(Vertex x);                    // x_k was reached; false: go no further
+bool wants(uint leaf);                   // is this path, by next-event estimation, of interest?
+bool goesOn(uint k);                     // is any path of interest that scatters at x_k or beyond?
+void emit(uint leaf, vec3 f, Ending e);  // a path that carries light. f is its MIS-weighted contribution over its density:
+                                         // the integrand in primary sample space
+
+#include "path/trunk.glsl"
+
+uint tracedRays = 0u;
 uint shadowRays = 0u;
 
 uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
@@ -25,63 +51,93 @@ uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
     return randomBlock(seed, STREAM_PATH + 2u * k + purpose, uvec2(frame.key0, frame.key1));
 }
 
-// Is the light sample hidden from the surface?
-bool shadowed(Surface s, LightSample l, uint alphaSeed)
+// Does something stand between surface s and a target? Both ends are moved off their surfaces; the target has none where
+// its normal is 0.
+bool hidden(Surface s, vec3 target, vec3 targetNormal, vec3 direction, uint alphaSeed)
 {
-    ++shadowRays;
-    vec3 origin = offsetOrigin(s.position, s.geometricNormal, l.direction);
-    if (l.infinite) return occluded(Ray(origin, l.direction, RAY_MAX), alphaSeed);
-    vec3 target = l.normal == vec3(0.0) ? l.target : offsetOrigin(l.target, l.normal, -l.direction);
-    vec3 d = target - origin;
+    vec3 origin = offsetOrigin(s.position, s.geometricNormal, direction);
+    vec3 end = targetNormal == vec3(0.0) ? target : offsetOrigin(target, targetNormal, -direction);
+    vec3 d = end - origin;
     float distance = length(d);
     return distance > 0.0 && occluded(Ray(origin, d / distance, distance), alphaSeed);
 }
 
-// Surface s is x1 seen from direction wo.
-void walk(Surface s, vec3 wo, PathSeed seed, uint maxScatterings)
+bool hiddenAtInfinity(Surface s, vec3 direction, uint alphaSeed)
 {
-    vec3 throughput = vec3(1.0);
-    for (uint k = 1u; k <= maxScatterings; ++k) {
-        Bsdf bsdf = makeBsdf(s, wo);
-        if (absorbs(bsdf)) return;
+    return occluded(Ray(offsetOrigin(s.position, s.geometricNormal, direction), direction, RAY_MAX), alphaSeed);
+}
 
-        // Light found by next-event estimation: f L / (p_N + p_B), the balance heuristic written without 0/0.
-        uvec4 random = pathRandom(seed, k, PURPOSE_LIGHT);
-        LightSample light = sampleLight(random, s.position);
-        float scatterPdf;
-        vec3 f = evaluate(bsdf, light.direction * bsdf.frame, light.direction, scatterPdf);
-        vec3 contribution = throughput * f * light.radiance / (light.dirac ? light.pdf : light.pdf + scatterPdf);
-        if (contribution != vec3(0.0) && !shadowed(s, light, random.w)) emit(makeLeaf(k, BY_LIGHT), contribution);
+// Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight times f L / p_N, without 0/0.
+void emitByLight(Vertex x, PathSeed seed)
+{
+    uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);
+    LightSample light = sampleLight(random, x.s.position);
+    float scatterPdf;
+    vec3 f = evaluate(x.bsdf, light.direction * x.bsdf.frame, light.direction, scatterPdf);
+    float density = light.dirac ? light.pdf : light.pdf + scatterPdf;
+    Ending e = Ending(light.direction, light.radiance, f * light.radiance / density, light.pdf);
+    if (light.dirac) {
+        e.radiance /= light.pdf;
+        e.lightPdf = -1.0;
+    }
+    vec3 contribution = x.throughput * e.weighted;
+    if (contribution == vec3(0.0)) return;
+    ++shadowRays;
+    bool isHidden = light.infinite ? hiddenAtInfinity(x.s, light.direction, random.w)
+                                   : hidden(x.s, light.target, light.normal, light.direction, random.w);
+    if (!isHidden) emit(makeLeaf(x.k, BY_LIGHT), contribution, e);
+}
 
-        if (k == maxScatterings && !HAS_REACHABLE_LIGHT) return;
-        random = pathRandom(seed, k, PURPOSE_SCATTER);
-        Scatter scatter = sampleBsdf(bsdf, vec3(unitFloat(random.x), unitFloat(random.y), unitFloat(random.z)));
-        throughput *= scatter.weight;
-        if (throughput == vec3(0.0)) return;
-        ++bounceRays;
-        vec3 origin = offsetOrigin(s.position, s.geometricNormal, scatter.direction);
-        Hit hit = closestHit(Ray(origin, scatter.direction, RAY_MAX), random.w);
+// Surface s is x_1, seen from direction wo.
+void walk(Surface s, vec3 wo, PathSeed seed)
+{
+    trunk = NO_TRUNK;
+    Vertex x;
+    x.s = s;
+    x.throughput = vec3(1.0);
+    for (x.k = 1u; x.k <= MAX_BOUNCES; ++x.k) {
+        x.bsdf = makeBsdf(x.s, wo);
+        if (absorbs(x.bsdf) || !visit(x)) return;
+        if (wants(makeLeaf(x.k, BY_LIGHT))) emitByLight(x, seed);
+        if (!goesOn(x.k)) return;
+
+        uvec4 random = pathRandom(seed, x.k, PURPOSE_SCATTER);
+        Segment to;
+        to.scatter = sampleBsdf(x.bsdf, vec3(unitFloat(random.x), unitFloat(random.y), unitFloat(random.z)));
+        x.throughput *= to.scatter.weight;
+        if (x.throughput == vec3(0.0)) return;
+        ++tracedRays;
+        wo = -to.scatter.direction;
+        to.hit = closestHit(Ray(offsetOrigin(x.s.position, x.s.geometricNormal, to.scatter.direction), to.scatter.direction, RAY_MAX),
+                            random.w);
+        departTrunk(x, to.scatter);
 
         // Light found by scattering, weighted against next-event estimation.
-        float lightDensity = 0.0;
-        vec3 emitted = vec3(0.0);
-        if (hit.triangle == NO_HIT) {
+        Ending e = Ending(to.scatter.direction, vec3(0.0), vec3(0.0), 0.0);
+        Surface next;
+        if (to.hit.triangle == NO_HIT) {
             if (!HAS_ENVIRONMENT) return;
-            vec4 environment = loadEnvironment(scatter.direction);
-            emitted = environment.rgb;
-            lightDensity = environmentPdf(environment);
+            vec4 environment = loadEnvironment(to.scatter.direction);
+            e.radiance = environment.rgb;
+            e.lightPdf = environmentPdf(environment);
+            to.distance = RAY_MAX;
+            to.geometry = 1.0;
         } else {
-            vec3 from = s.position;
-            wo = -scatter.direction;
-            s = loadSurface(hit.triangle, hit.barycentric, wo);
-            emitted = s.emission;
-            lightDensity = lightPdf(s, from, wo);
+            next = loadSurface(to.hit.triangle, to.hit.barycentric, wo);
+            vec3 d = next.position - x.s.position;
+            to.distance = length(d);
+            to.geometry = abs(dot(next.geometricNormal, to.scatter.direction)) / dot(d, d);
+            e.radiance = next.emission;
+            e.lightPdf = lightPdf(next, x.s.position, wo);
         }
-        if (emitted != vec3(0.0)) {
-            float weight = scatter.dirac ? 1.0 : scatter.pdf / (scatter.pdf + lightDensity);
-            emit(makeLeaf(k, BY_SCATTER), throughput * emitted * weight);
+        if (e.radiance != vec3(0.0)) {
+            e.weighted = e.radiance * (to.scatter.dirac ? 1.0 : to.scatter.pdf / (to.scatter.pdf + e.lightPdf));
+            offerLight(x, to);
+            emit(makeLeaf(x.k, BY_SCATTER), x.throughput * e.weighted, e);
         }
-        if (hit.triangle == NO_HIT) return;
+        if (to.hit.triangle == NO_HIT) return;
+        joinTrunk(x, to, next);
+        x.s = next;
     }
 }
 

@@ -6,6 +6,10 @@
 
 SHARED_BEGIN
 
+SHARED_CONST uint MAX_RESERVOIRS = 4u; // of a pixel: one for each row of the estimator's table
+
+SHARED_CONST uint NO_NEIGHBOR = 0xffffffffu;
+
 // A pinhole or parallel camera in scaled scene coordinates. A picture point is (x, y) in [-1, 1]^2, y up.
 struct CameraUniform {
     vec4 position; // xyz
@@ -22,18 +26,33 @@ struct FrameUniform {
     uint frame;  // index since the last reset; with the pixel it is the path's seed
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
+    uint slice;          // which half of Surfaces is this frame's: 0 or 1; the other is the previous frame's
+    uint sameView;       // 1: every pixel sees what it saw in the previous frame, so shifts between them are identities
+    uint maxConfidence;  // M_c, frames
+    uint neighborCount;  // K
+    float neighborRadius; // pixels
     uint padding0;
     uint padding1;
-    uint padding2;
+    vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
+    vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };
 
-// Device counters, 64 bits as (low, high) pairs.
+// Device counters, 64 bits as (low, high) pairs: rays by kind, shifts by outcome, non-finite values by stage.
 SHARED_CONST uint COUNTER_PRIMARY = 0u;
 SHARED_CONST uint COUNTER_BOUNCE = 1u;
 SHARED_CONST uint COUNTER_SHADOW = 2u;
-SHARED_CONST uint COUNTER_REPLAY = 3u;
-SHARED_CONST uint COUNTER_RECONNECTION = 4u;
-SHARED_CONST uint COUNTER_NONFINITE = 5u; // + stage
+SHARED_CONST uint COUNTER_REPLAY = 3u;       // rays of replayed paths, to the next vertex or to a light
+SHARED_CONST uint COUNTER_RECONNECTION = 4u; // rays that ask whether two vertices see each other
+SHARED_CONST uint RAY_KINDS = 5u;
+SHARED_CONST uint COUNTER_SHIFT = 5u; // + outcome
+SHARED_CONST uint SHIFT_DONE = 0u;           // the path exists in the other domain and carries light there
+SHARED_CONST uint SHIFT_ENDED = 1u;          // the replay left the scene, was absorbed or met no light
+SHARED_CONST uint SHIFT_JOINED_EARLIER = 2u; // the replay could reconnect before the path itself does: not invertible
+SHARED_CONST uint SHIFT_NOT_JOINABLE = 3u;   // too near or too smooth to reconnect there
+SHARED_CONST uint SHIFT_HIDDEN = 4u;         // something stands between the vertices
+SHARED_CONST uint SHIFT_DARK = 5u;           // joined, but nothing is scattered that way
+SHARED_CONST uint SHIFT_OUTCOMES = 6u;
+SHARED_CONST uint COUNTER_NONFINITE = 11u; // + stage
 SHARED_CONST uint STAGE_PRIMARY = 0u;
 SHARED_CONST uint STAGE_PATH_TRACE = 1u;
 SHARED_CONST uint STAGE_CANONICAL = 2u;
@@ -42,11 +61,13 @@ SHARED_CONST uint STAGE_SPATIAL_TRACE = 4u;
 SHARED_CONST uint STAGE_SPATIAL_GATHER = 5u;
 SHARED_CONST uint STAGE_ACCUMULATE = 6u;
 SHARED_CONST uint STAGE_COUNT = 7u;
-SHARED_CONST uint COUNTER_COUNT = 12u; // COUNTER_NONFINITE + STAGE_COUNT
+SHARED_CONST uint COUNTER_COUNT = 18u;
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 160);
+static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 304);
+static_assert(shared::COUNTER_SHIFT == shared::RAY_KINDS);
+static_assert(shared::COUNTER_NONFINITE == shared::COUNTER_SHIFT + shared::SHIFT_OUTCOMES);
 static_assert(shared::COUNTER_COUNT == shared::COUNTER_NONFINITE + shared::STAGE_COUNT);
 #endif
 #endif

@@ -3,6 +3,8 @@
 #ifndef SHADERS_SHARED_VARIANT_H
 #define SHADERS_SHARED_VARIANT_H
 
+#include "shared/types.h"
+
 #define VARIANT_CONSTANTS(X)                                                                                           \
     X(0, uint, MAX_BOUNCES, 5u, "scattering events on a path")                                                         \
     X(1, bool, BOX_FILTER, false, "jittered camera rays")                                                              \
@@ -27,6 +29,18 @@
     X(20, bool, HAS_EMISSIVE_TEXTURE, true, "emissive textures")                                                       \
     X(21, bool, HAS_TRANSMISSION_TEXTURE, true, "transmission textures")                                               \
     X(22, bool, HAS_SPECULAR_TEXTURE, true, "specular weight and color textures")                                      \
-    X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")
+    X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")                                                    \
+    X(24, uint, RESERVOIR_COUNT, 1u, "reservoirs of a pixel")                                                          \
+    X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")
+
+
+SHARED_BEGIN
+
+// Values of SHIFT_MAP.
+SHARED_CONST uint SHIFT_REPLAY = 0u;
+SHARED_CONST uint SHIFT_RECONNECTION = 1u;
+SHARED_CONST uint SHIFT_HYBRID = 2u;
+
+SHARED_END
 
 #endif

@@ -191,12 +191,3 @@ TEST(Settings, TheHashTellsEverySingleChange)
     EXPECT_EQ(passes::hash(Settings{}), passes::hash(Settings{}));
     EXPECT_EQ(passes::hash(Settings{}).size(), 16u);
 }
-
-TEST(Settings, OnlyWhatIsBuiltIsAccepted)
-{
-    Settings s;
-    EXPECT_NO_THROW(passes::requireImplemented(s));
-    s.method = passes::Method::RestirPt;
-    EXPECT_EQ(messageOf([&] { passes::requireImplemented(s); }),
-              "Method \"restir-pt\" is not built yet; there is: pt.");
-}

@@ -1,0 +1,39 @@
+// Set 0, the frame: what every stage knows, with the variant's constants and the counters. Knows nothing of scenes.
+#ifndef SHADERS_LIB_FRAME_GLSL
+#define SHADERS_LIB_FRAME_GLSL
+
+#include "lib/random.glsl"
+#include "shared/frame.h"
+#include "shared/streams.h"
+#include "shared/variant.h"
+
+#define DECLARE_CONSTANT(ID, TYPE, NAME, DEFAULT, WHAT) layout(constant_id = ID) const TYPE NAME = DEFAULT;
+VARIANT_CONSTANTS(DECLARE_CONSTANT)
+#undef DECLARE_CONSTANT
+
+layout(set = SET_FRAME, binding = 0, std140) uniform Frame { FrameUniform frame; };
+// 64-bit counters as (low, high) pairs.
+layout(set = SET_FRAME, binding = 1, std430) buffer Counters { uint counters[]; };
+
+void addToCounter(uint counter, uint amount)
+{
+    if (amount == 0u) return;
+    uint before = atomicAdd(counters[2u * counter], amount);
+    if (before + amount < before) atomicAdd(counters[2u * counter + 1u], 1u);
+}
+
+// The one place that looks for non-finite values: such a value becomes 0 and is counted, never passed on silently.
+vec3 finiteOrCounted(vec3 value, uint stage)
+{
+    if (!any(isnan(value)) && !any(isinf(value))) return value;
+    addToCounter(COUNTER_NONFINITE + stage, 1u);
+    return vec3(0.0);
+}
+
+// Numbers that decide between samples: keyed by the pixel and frame that decide, never by a stored seed.
+uvec4 decisionRandom(uint pixel, uint stream)
+{
+    return randomBlock(PathSeed(frame.frame, pixel), stream, uvec2(frame.key0, frame.key1));
+}
+
+#endif

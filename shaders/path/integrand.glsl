@@ -1,0 +1,228 @@
+// What resampling knows of light transport: domains, and paths shifted between them. Tests put a closed-form integrand
+// of the same five names in its place.
+#ifndef SHADERS_PATH_INTEGRAND_GLSL
+#define SHADERS_PATH_INTEGRAND_GLSL
+
+#include "restir/reservoir.glsl"
+
+#include "path/walk.glsl"
+
+// The integral of one pixel in one frame: what it sees, and from where.
+struct Domain {
+    bool seen; // else the primary ray left the scene, and there is nothing to integrate
+    uint triangle;
+    vec2 barycentric;
+    vec3 position;
+    vec3 normal; // geometric, on the camera's side
+    vec3 wo;
+};
+
+Domain makeDomain(uint pixel, bool previous)
+{
+    uint slice = previous ? 1u - frame.slice : frame.slice;
+    uvec4 hit = surfaces[slice * frame.width * frame.height + pixel];
+    Domain d;
+    d.seen = hit.x != NO_HIT;
+    if (!d.seen) return d;
+    d.triangle = hit.x;
+    d.barycentric = uintBitsToFloat(hit.yz);
+    TriangleGeometry g = loadTriangle(d.triangle);
+    d.position = baryMix(g.p0, g.p1, g.p2, d.barycentric);
+    d.wo = previous ? towardsCamera(frame.previousCamera, d.position) : towardsCamera(frame.camera, d.position);
+    d.normal = normalize(g.areaNormal);
+    if (dot(d.normal, d.wo) < 0.0) d.normal = -d.normal;
+    return d;
+}
+
+// Are two domains near enough to each other that reuse pays? Asks the geometry only, never the samples: unbiased.
+bool alike(Domain a, Domain b)
+{
+    float distance = length(a.position - frame.camera.position.xyz);
+    return a.seen && b.seen && dot(a.normal, b.normal) > 0.9 &&
+           abs(dot(a.normal, b.position - a.position)) < 0.02 * (ORTHOGRAPHIC ? length(frame.camera.up.xyz) : distance);
+}
+
+// The pixel of the previous frame that saw the same point.
+bool reproject(Domain here, uint pixel, out uint previousPixel)
+{
+    previousPixel = pixel;
+    if (frame.sameView != 0u) return true;
+    vec3 d = here.position - frame.previousCamera.position.xyz;
+    float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.previousCamera.forward.xyz);
+    if (depth <= 0.0) return false;
+    vec3 right = frame.previousCamera.right.xyz;
+    vec3 up = frame.previousCamera.up.xyz;
+    vec2 p = vec2(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up)) / depth;
+    vec2 size = vec2(frame.width, frame.height);
+    vec2 at = floor((p * vec2(0.5, -0.5) + 0.5) * size);
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) return false;
+    previousPixel = uint(at.y) * frame.width + uint(at.x);
+    return true;
+}
+
+// ----------------------------------------------------------------------------------------------------------- shift maps
+// All reservoirs whose samples have one seed are shifted in one walk: they share the trunk and the visibility of the
+// reconnection vertex.
+PathSample moving[MAX_RESERVOIRS];
+vec3 arrived[MAX_RESERVOIRS];
+uint outcome[MAX_RESERVOIRS]; // SHIFT_*
+uint open = 0u;               // bit c: reservoir c of the group is still under way
+PathSeed groupSeed;
+uint joiningRays = 0u;
+uint shiftOutcomes[SHIFT_OUTCOMES] = uint[SHIFT_OUTCOMES](0u, 0u, 0u, 0u, 0u, 0u);
+
+bool isOpen(uint c) { return (open & (1u << c)) != 0u; }
+
+void settle(uint c, uint what, vec3 f)
+{
+    open &= ~(1u << c);
+    outcome[c] = what;
+    arrived[c] = f;
+}
+
+bool wants(uint leaf)
+{
+    bool wanted = false;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) wanted = wanted || (isOpen(c) && moving[c].joint == 0u && moving[c].leaf == leaf);
+    return wanted;
+}
+
+bool goesOn(uint k)
+{
+    bool more = false;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        bool deeper = moving[c].joint == 0u ? moving[c].leaf > makeLeaf(k, BY_LIGHT) : moving[c].joint > k + 1u;
+        more = more || (isOpen(c) && deeper);
+    }
+    return more;
+}
+
+void emit(uint leaf, vec3 f, Ending e)
+{
+    bool joinedEarlier = (leaf & 1u) == BY_SCATTER && lightJoint.joins;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (!isOpen(c) || moving[c].joint != 0u || moving[c].leaf != leaf) continue;
+        settle(c, joinedEarlier ? SHIFT_JOINED_EARLIER : SHIFT_DONE, joinedEarlier ? vec3(0.0) : f);
+    }
+}
+
+// f(T Y) of a path of the group that is joined from x = x_(r-1) to x_r on `at`, as evaluated by `f` with density `pdf`.
+vec3 joined(PathSample y, Vertex x, vec3 f, float pdf, Surface at, vec3 direction, float geometry)
+{
+    Reconnection r = y.reconnection;
+    vec3 prefix = x.throughput * f * geometry;
+    if (scatteringsOf(y.leaf) == x.k) { // x_r is the light
+        vec4 environment = loadEnvironment(direction);
+        bool infinite = r.triangle == NO_HIT;
+        vec3 radiance = infinite ? environment.rgb : at.emission;
+        float lightDensity = infinite ? environmentPdf(environment) : lightPdf(at, x.s.position, -direction);
+        return radiance == vec3(0.0) ? vec3(0.0) : prefix * radiance * (pdf / (pdf + lightDensity));
+    }
+    Bsdf bsdf = makeBsdf(at, -direction);
+    if (absorbs(bsdf)) return vec3(0.0);
+    float departure;
+    vec3 onward = evaluate(bsdf, r.direction * bsdf.frame, r.direction, departure);
+    if (onward == vec3(0.0)) return vec3(0.0);
+    float weight = 1.0; // what is left of the MIS weight and depends on x_(r-1)
+    if (scatteringsOf(y.leaf) == y.joint) {
+        if ((y.leaf & 1u) == BY_SCATTER) weight = departure / (departure + r.lightPdf);
+        else if (r.lightPdf >= 0.0) weight = 1.0 / (r.lightPdf + departure);
+    }
+    return prefix * onward * r.suffix * weight;
+}
+
+// Joins x = x_(r-1) to the reconnection vertices of all paths of the group that reconnect next.
+void join(Vertex x)
+{
+    uint joining = 0u;
+    Reconnection r;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (!isOpen(c) || moving[c].joint != x.k + 1u) continue;
+        joining |= 1u << c;
+        r = moving[c].reconnection; // paths of one seed and one r have the same x_r
+    }
+    for (bool pending = joining != 0u; pending; pending = false) { // lavapipe skips loops, not the body of an `if`
+        bool infinite = r.triangle == NO_HIT;
+        uint triangle = infinite ? 0u : r.triangle;
+        vec3 d = infinite ? r.direction : hitPosition(triangle, r.barycentric) - x.s.position;
+        float squared = dot(d, d);
+        float distance = infinite ? RAY_MAX : sqrt(squared);
+        vec3 direction = infinite ? r.direction : d / distance;
+        if (!infinite && distance < JOIN_DISTANCE) direction = x.s.geometricNormal; // not joinable, and d / 0 is no direction
+        Surface at = loadSurface(triangle, r.barycentric, -direction);
+        float geometry = infinite ? 1.0 : abs(dot(at.geometricNormal, direction)) / squared;
+        float pdf;
+        vec3 f = evaluate(x.bsdf, direction * x.bsdf.frame, direction, pdf);
+        bool scatters = f != vec3(0.0);
+        bool isHidden = false;
+        if (scatters && joinsLight(x.k + 1u, x.s, distance)) {
+            ++joiningRays;
+            uint alphaSeed = pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w;
+            isHidden = infinite ? hiddenAtInfinity(x.s, direction, alphaSeed)
+                                : hidden(x.s, at.position, at.geometricNormal, direction, alphaSeed);
+        }
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            if ((joining & (1u << c)) == 0u) continue;
+            bool toLight = scatteringsOf(moving[c].leaf) == x.k;
+            bool joinable = toLight ? joinsLight(x.k + 1u, x.s, distance) : joins(x.k + 1u, x.s, at, distance);
+            vec3 moved = vec3(0.0);
+            if (joinable && scatters && !isHidden) moved = joined(moving[c], x, f, pdf, at, direction, geometry);
+            settle(c, !joinable ? SHIFT_NOT_JOINABLE : isHidden ? SHIFT_HIDDEN : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
+        }
+    }
+}
+
+bool visit(Vertex x)
+{
+    if (trunk.joint != 0u) { // at x_k already: whatever is still under way reconnects later in its own domain
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+            if (isOpen(c)) settle(c, SHIFT_JOINED_EARLIER, vec3(0.0));
+        return false;
+    }
+    if (SHIFT_MAP != SHIFT_REPLAY) join(x);
+    return open != 0u;
+}
+
+// The samples of a pixel's reservoirs, shifted into domain `to`: f[c] = f(T Y_c), 0 where T is not defined.
+void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS])
+{
+    uint left = 0u;
+    for (uint c = 0u; c < MAX_RESERVOIRS; ++c) f[c] = vec3(0.0);
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        moving[c] = r[c].chosen;
+        if (!(r[c].weightSum > 0.0)) continue;
+        // Reconnection alone moves paths that end on a sampled light at once, and those that reconnect at x_2.
+        if (SHIFT_MAP == SHIFT_RECONNECTION && moving[c].joint == 0u && moving[c].leaf != makeLeaf(1u, BY_LIGHT)) {
+            ++shiftOutcomes[SHIFT_NOT_JOINABLE];
+            continue;
+        }
+        left |= 1u << c;
+    }
+    while (left != 0u) {
+        groupSeed = moving[findLSB(left)].seed;
+        uint group = 0u;
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+            if ((left & (1u << c)) != 0u && moving[c].seed == groupSeed) group |= 1u << c;
+        left &= ~group;
+        open = group;
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            arrived[c] = vec3(0.0);
+            outcome[c] = SHIFT_ENDED;
+        }
+        walk(loadSurface(to.triangle, to.barycentric, to.wo), to.wo, groupSeed);
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            if ((group & (1u << c)) == 0u) continue;
+            f[c] = finiteOrCounted(arrived[c], STAGE);
+            ++shiftOutcomes[outcome[c]];
+        }
+    }
+}
+
+void countShifts()
+{
+    addToCounter(COUNTER_REPLAY, tracedRays + shadowRays);
+    addToCounter(COUNTER_RECONNECTION, joiningRays);
+    for (uint i = 0u; i < SHIFT_OUTCOMES; ++i) addToCounter(COUNTER_SHIFT + i, shiftOutcomes[i]);
+}
+
+#endif

@@ -1,0 +1,71 @@
+// Reservoirs and the three ways to merge samples into them. Knows neither scenes nor buffers nor colors.
+//
+// A reservoir holds (Y, f(Y), S): a path, its contribution in the domain (pixel and frame) where it now lives, and the sum
+// of weights S: an unbiased estimate of the integral of the target p_hat = <target, f>. W = S / p_hat(Y) is never formed;
+// merges need only ratios rho = p_hat'(T Y) / p_hat(Y) of the two domains. (Densities are taken in a measure that shifts
+// preserve, so |T'| = 1: path/reconnection.glsl.)
+#ifndef SHADERS_RESTIR_RESERVOIR_GLSL
+#define SHADERS_RESTIR_RESERVOIR_GLSL
+
+#include "lib/frame.glsl"
+#include "restir/path_sample.glsl"
+
+struct Reservoir {
+    PathSample chosen;  // Y
+    vec3 f;             // f(Y) in this domain
+    float weightSum;    // S
+    float carry;        // what rounding took from S: the sum is weightSum + carry
+};
+
+const PathSample NO_SAMPLE =
+    PathSample(PathSeed(0u, 0u), 0u, 0u, Reconnection(0u, vec2(0.0), 0.0, vec3(0.0), vec3(0.0)));
+const Reservoir EMPTY = Reservoir(NO_SAMPLE, vec3(0.0), 0.0, 0.0);
+
+// Algorithm 1, update: true when the new sample of weight w is the one to keep.
+bool consider(inout Reservoir r, float w, float u)
+{
+    r.weightSum += w;
+    return u * r.weightSum < w;
+}
+
+// rho. A reservoir whose sample has no target is empty: its S is 0, and so is everything multiplied with it.
+float ratio(float targetThere, float targetHere) { return targetHere > 0.0 ? targetThere / targetHere : 0.0; }
+
+// a x / (a x + b) for x in [0, inf], b > 0: saturates where a x would overflow.
+float share(float a, float x, float b) { return x > 1.0 ? a / (a + b / x) : a * x / (a * x + b); }
+
+// b / (a x + b), the rest.
+float rest(float a, float x, float b) { return x > 1.0 ? (b / x) / (a + b / x) : b / (a * x + b); }
+
+// Eqs. 9 and 13 for canonical sample and history: `here` stands in its own domain, `history` in another; rho is the ratio
+// of targets (other over own domain) of here's sample, historyRho likewise (here's over its own) of history's sample.
+// True when history's sample is chosen: the caller replaces sample and f.
+//
+// Summing thousands of frames with c / (c + 1) S + 1 / (c + 1) S_n loses up to 1e-2 to rounding (M_c = 10^6). Hence the
+// complement form: S' = v + (w_n - eps v), eps = 1 - weight of history, with the rounding of v and of the sum carried on.
+bool mergeHistory(inout Reservoir here, Reservoir history, float rho, float historyRho, float confidence,
+                  float historyConfidence, float u)
+{
+    precise float weight = here.weightSum * rest(historyConfidence, rho, confidence); // w_n
+    if (historyRho == 0.0 || history.weightSum == 0.0) { // history has nothing to give, but its confidence counts
+        here.weightSum = weight;
+        here.carry = 0.0;
+        return false;
+    }
+    float eps = share(confidence, historyRho, historyConfidence);
+    if (confidence * historyRho <= 16.0 * historyConfidence) {
+        precise float value = history.weightSum * historyRho;
+        precise float roundedOff = fma(history.weightSum, historyRho, -value);
+        precise float change = (weight - eps * value) + roundedOff + history.carry * historyRho * (1.0 - eps);
+        precise float sum = value + change;
+        precise float carry = change - (sum - value);
+        here.weightSum = sum;
+        here.carry = carry;
+    } else { // 1 - eps would cancel
+        here.weightSum = weight + history.weightSum * (historyConfidence / confidence) * eps;
+        here.carry = 0.0;
+    }
+    return !(u * here.weightSum < weight);
+}
+
+#endif

@@ -1,0 +1,66 @@
+// A set of reservoirs in two buffers, RESERVOIR_COUNT a pixel, plane by plane. The words of every reservoir: seed, leaf and
+// joint, S | f, carry; after them one word a pixel, the confidence, which all reservoirs of a pixel share (frames; 32 bits,
+// so that it never wraps). The paths of reconnecting shift maps: 3 rows a reservoir, left out when paths are replayed.
+#ifndef SHADERS_RESTIR_RESERVOIR_STORE_GLSL
+#define SHADERS_RESTIR_RESERVOIR_STORE_GLSL
+
+#include "restir/reservoir.glsl"
+
+const uint WORD_ROWS = 2u;
+const uint PATH_ROWS = 3u;
+
+uint pixelCount() { return frame.width * frame.height; }
+uint wordRow(uint pixel, uint c, uint row) { return (WORD_ROWS * c + row) * pixelCount() + pixel; }
+uint pathRow(uint pixel, uint c, uint row) { return (PATH_ROWS * c + row) * pixelCount() + pixel; }
+uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount() + (pixel >> 2u); }
+
+// LOAD_RESERVOIRS defines void load<SET>(uint pixel, out Reservoir r[MAX_RESERVOIRS]) and uint load<SET>Confidence(uint pixel)
+// over the buffers WORDS and PATHS; STORE_RESERVOIRS the same with store. Arrays have MAX_RESERVOIRS elements, of which
+// RESERVOIR_COUNT are used: glslang 12 can neither copy nor initialize arrays sized by a specialisation constant.
+#define LOAD_RESERVOIRS(SET, WORDS, PATHS)                                                                             \
+    Reservoir load##SET##One(uint pixel, uint c)                                                                       \
+    {                                                                                                                  \
+        Reservoir r = EMPTY;                                                                                           \
+        uvec4 a = WORDS[wordRow(pixel, c, 0u)];                                                                        \
+        uvec4 b = WORDS[wordRow(pixel, c, 1u)];                                                                        \
+        r.chosen.seed = PathSeed(a.x, a.y);                                                                            \
+        r.chosen.leaf = a.z & 0xffffu;                                                                                 \
+        r.chosen.joint = a.z >> 16u;                                                                                   \
+        r.weightSum = uintBitsToFloat(a.w);                                                                            \
+        r.f = uintBitsToFloat(b.xyz);                                                                                  \
+        r.carry = uintBitsToFloat(b.w);                                                                                \
+        if (SHIFT_MAP != SHIFT_REPLAY) {                                                                               \
+            uvec4 vertex = PATHS[pathRow(pixel, c, 0u)];                                                               \
+            uvec4 suffix = PATHS[pathRow(pixel, c, 1u)];                                                               \
+            r.chosen.reconnection =                                                                                    \
+                Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w),                          \
+                             uintBitsToFloat(PATHS[pathRow(pixel, c, 2u)].xyz), uintBitsToFloat(suffix.xyz));          \
+        }                                                                                                              \
+        return r;                                                                                                      \
+    }                                                                                                                  \
+    void load##SET(uint pixel, out Reservoir r[MAX_RESERVOIRS])                                                        \
+    {                                                                                                                  \
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) r[c] = load##SET##One(pixel, c);                                   \
+    }                                                                                                                  \
+    uint load##SET##Confidence(uint pixel) { return WORDS[confidenceRow(pixel)][pixel & 3u]; }
+
+#define STORE_RESERVOIRS(SET, WORDS, PATHS)                                                                            \
+    void store##SET(uint pixel, Reservoir r[MAX_RESERVOIRS])                                                           \
+    {                                                                                                                  \
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
+            PathSample y = r[c].chosen;                                                                                \
+            WORDS[wordRow(pixel, c, 0u)] =                                                                             \
+                uvec4(y.seed.frame, y.seed.pixel, y.leaf | y.joint << 16u, floatBitsToUint(r[c].weightSum));           \
+            WORDS[wordRow(pixel, c, 1u)] = uvec4(floatBitsToUint(r[c].f), floatBitsToUint(r[c].carry));                \
+            if (SHIFT_MAP != SHIFT_REPLAY) {                                                                           \
+                Reconnection k = y.reconnection;                                                                       \
+                PATHS[pathRow(pixel, c, 0u)] =                                                                         \
+                    uvec4(k.triangle, floatBitsToUint(k.barycentric), floatBitsToUint(k.lightPdf));                    \
+                PATHS[pathRow(pixel, c, 1u)] = uvec4(floatBitsToUint(k.suffix), 0u);                                   \
+                PATHS[pathRow(pixel, c, 2u)] = uvec4(floatBitsToUint(k.direction), 0u);                                \
+            }                                                                                                          \
+        }                                                                                                              \
+    }                                                                                                                  \
+    void store##SET##Confidence(uint pixel, uint confidence) { WORDS[confidenceRow(pixel)][pixel & 3u] = confidence; }
+
+#endif

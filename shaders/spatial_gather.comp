@@ -1,0 +1,80 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Stage 4. Merges the neighbors' reservoirs (defensive pairwise MIS), resolves the color, and leaves the history of the
+// next frame. With no neighbors it only resolves and hands on.
+#define STAGE STAGE_SPATIAL_GATHER
+#include "lib/frame.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = SET_PASS, binding = 0, std430) readonly buffer Reservoirs { uvec4 reservoirs[]; };
+layout(set = SET_PASS, binding = 1, std430) readonly buffer ReservoirPaths { uvec4 reservoirPaths[]; };
+layout(set = SET_PASS, binding = 2, std430) readonly buffer Neighbors { uint neighbors[]; };
+layout(set = SET_PASS, binding = 3, std430) readonly buffer Shifted { vec4 shifted[]; };
+layout(set = SET_PASS, binding = 4, std430) buffer History { uvec4 history[]; };
+layout(set = SET_PASS, binding = 5, std430) buffer HistoryPaths { uvec4 historyPaths[]; };
+layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
+
+#include "restir/estimator.glsl"
+#include "restir/reservoir_store.glsl"
+LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+STORE_RESERVOIRS(History, history, historyPaths)
+
+void main()
+{
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (at.x >= frame.width || at.y >= frame.height) return;
+    uint pixel = at.y * frame.width + at.x;
+
+    Reservoir r[MAX_RESERVOIRS];
+    loadReservoirs(pixel, r);
+    float confidence = float(loadReservoirsConfidence(pixel)); // c_i
+    float neighborConfidence = 0.0;                            // M_n
+    for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
+        uint neighbor = neighbors[slot * pixelCount() + pixel];
+        if (neighbor != NO_NEIGHBOR) neighborConfidence += float(loadReservoirsConfidence(neighbor));
+    }
+    // Pairwise MIS in complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j is the part of the own sample's
+    // MIS weight that neighbor j takes. Equal domains change nothing, to the last bit, and what rounding takes is carried on.
+    Reservoir merged[MAX_RESERVOIRS];
+    precise float change[MAX_RESERVOIRS];
+    float kept[MAX_RESERVOIRS]; // MIS weight of the own sample
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        merged[c] = EMPTY;
+        change[c] = r[c].carry;
+        kept[c] = 1.0;
+    }
+    for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
+        uint neighbor = neighbors[slot * pixelCount() + pixel];
+        if (neighbor == NO_NEIGHBOR) continue;
+        float part = float(loadReservoirsConfidence(neighbor)) / (confidence + neighborConfidence); // c_j / M
+        float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + slot).x);                    // one for all reservoirs
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            Reservoir other = loadReservoirsOne(neighbor, c);
+            vec4 words = shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel];
+            float a = ratio(targetOf(c, words.xyz), targetOf(c, other.f));
+            precise float weight = (other.weightSum + other.carry) * part * (neighborConfidence / confidence) *
+                                   share(confidence, a, neighborConfidence); // w_j
+            precise float taken = part * share(neighborConfidence, words.w, confidence); // eps_j
+            change[c] += weight - taken * r[c].weightSum;
+            kept[c] -= taken;
+            if (!consider(merged[c], weight, u)) continue;
+            merged[c].chosen = other.chosen;
+            merged[c].f = words.xyz;
+        }
+    }
+    float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + frame.neighborCount).x);
+    vec3 sum = color[pixel].rgb;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (merged[c].weightSum > 0.0 && !consider(merged[c], r[c].weightSum * kept[c], u)) {
+            r[c].chosen = merged[c].chosen;
+            r[c].f = merged[c].f;
+        }
+        precise float total = r[c].weightSum + change[c];
+        precise float carry = change[c] - (total - r[c].weightSum);
+        r[c].weightSum = total;
+        r[c].carry = carry;
+        sum += resolved(c, r[c]);
+    }
+    storeHistory(pixel, r);
+    storeHistoryConfidence(pixel, uint(confidence + neighborConfidence));
+    color[pixel] = vec4(finiteOrCounted(sum, STAGE), 0.0);
+}

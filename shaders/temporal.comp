@@ -1,0 +1,71 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Stage 2. Merges each pixel's canonical reservoirs with those of the pixel that saw the same point in the previous frame.
+#define STAGE STAGE_TEMPORAL
+#include "scene/bindings.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
+layout(set = SET_PASS, binding = 1, std430) readonly buffer History { uvec4 history[]; };
+layout(set = SET_PASS, binding = 2, std430) readonly buffer HistoryPaths { uvec4 historyPaths[]; };
+layout(set = SET_PASS, binding = 3, std430) buffer Reservoirs { uvec4 reservoirs[]; };
+layout(set = SET_PASS, binding = 4, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
+
+#include "integrand.glsl"
+#include "restir/estimator.glsl"
+#include "restir/reservoir_store.glsl"
+LOAD_RESERVOIRS(History, history, historyPaths)
+LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+
+void main()
+{
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (at.x >= frame.width || at.y >= frame.height) return;
+    uint pixel = at.y * frame.width + at.x;
+
+    Domain here = makeDomain(pixel, false);
+    uint previousPixel;
+    if (!here.seen || !reproject(here, pixel, previousPixel)) return;
+    Domain there = makeDomain(previousPixel, true);
+    uint historyConfidence = min(loadHistoryConfidence(previousPixel), frame.maxConfidence); // Eq. 12
+    if (historyConfidence == 0u || !alike(here, there)) return;
+
+    Reservoir r[MAX_RESERVOIRS];
+    Reservoir old[MAX_RESERVOIRS];
+    loadReservoirs(pixel, r);
+    loadHistory(previousPixel, old);
+    vec3 fThere[MAX_RESERVOIRS]; // of r's samples in the history's domain
+    vec3 fHere[MAX_RESERVOIRS];  // of the history's samples here
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        fThere[c] = r[c].f;
+        fHere[c] = old[c].f;
+    }
+    if (frame.sameView == 0u) {
+        for (uint way = 0u; way < 2u; ++way) { // a loop, so that the walk is compiled once
+            bool backward = way != 0u;
+            vec3 f[MAX_RESERVOIRS];
+            Reservoir subjects[MAX_RESERVOIRS];
+            Domain to = there;
+            subjects = r;
+            if (!backward) {
+                to = here;
+                subjects = old;
+            }
+            shiftInto(to, subjects, f);
+            if (backward) fThere = f;
+            else fHere = f;
+        }
+    }
+    uint confidence = loadReservoirsConfidence(pixel);
+    float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        float rho = ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f));
+        float historyRho = ratio(targetOf(c, fHere[c]), targetOf(c, old[c].f));
+        if (!mergeHistory(r[c], old[c], rho, historyRho, float(confidence), float(historyConfidence), u)) continue;
+        r[c].chosen = old[c].chosen;
+        r[c].f = fHere[c];
+    }
+    storeReservoirs(pixel, r);
+    storeReservoirsConfidence(pixel, confidence + historyConfidence);
+    countShifts();
+}
