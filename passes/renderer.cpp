@@ -51,15 +51,15 @@ constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 } // namespace
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-                   const std::function<void(double)>& bvhProgress, Features features)
-    : device_(device), settings_(settings), features_(features)
+                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet)
+    : device_(device), settings_(settings), featureSet_(featureSet)
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     orthographic_ = camera.orthographic;
     createBuffers(); // first: a picture too large for the device is said so before a long build
 
     const auto start = std::chrono::steady_clock::now();
-    const scene::SceneTables tables = scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress);
+    const scene::SceneTables tables = scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress, featureSet);
     scene_ = std::make_unique<scene::GpuScene>(device, tables);
     stats_.bvhSeconds = tables.bvh.stats.buildSeconds;
     stats_.tablesSeconds = secondsSince(start) - stats_.bvhSeconds;
@@ -81,8 +81,8 @@ void Renderer::createBuffers()
     stats_.bytesPerPixel = 0;
     const auto perPixel = [&](const char* label, uint64_t bytes, const char* setting = "--size") {
         stats_.bytesPerPixel += double(bytes);
-        // Stages declare all their buffers; what this method does not use is 16 bytes long.
-        return device_.createBuffer({.label = label, .size = std::max<uint64_t>(pixels * bytes, 16), .setting = setting});
+        // Whole rows of 16 bytes; one, too, where this method does not use what its stages declare.
+        return device_.createBuffer({.label = label, .size = std::max<uint64_t>((pixels * bytes + 15) / 16, 1) * 16, .setting = setting});
     };
     frameUniform_ =
         device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
@@ -96,8 +96,8 @@ void Renderer::createBuffers()
     const uint64_t pathBytes = settings_.shift == Shift::Replay ? 0 : RESERVOIR_PATH_BYTES;
     const uint64_t words = resamples ? count * RESERVOIR_WORD_BYTES + sizeof(uint32_t) : 0;
     stats_.reservoirBytes = resamples ? 2 * double(words + count * pathBytes) / double(count) : 0;
-    reservoirs_ = perPixel("Reservoirs", words + (resamples ? 16 : 0)); // 16: confidences, four to a row, end in a whole row
-    history_ = perPixel("History", words + (resamples ? 16 : 0));
+    reservoirs_ = perPixel("Reservoirs", words);
+    history_ = perPixel("History", words);
     reservoirPaths_ = perPixel("ReservoirPaths", count * pathBytes, "--size or --shift");
     historyPaths_ = perPixel("HistoryPaths", count * pathBytes, "--size or --shift");
     neighbors_ = perPixel("Neighbors", resamples ? settings_.spatial * sizeof(uint32_t) : 0, "--size or --spatial");
@@ -127,8 +127,7 @@ void Renderer::tune()
 
 void Renderer::createStages()
 {
-    variant_ = features_ == Features::Needed ? makeVariant(sceneFeatures_, settings_, orthographic_)
-                                             : fullVariant(settings_, orthographic_);
+    variant_ = makeVariant(sceneFeatures_, settings_, orthographic_);
     stats_.variant = describe(variant_);
     const auto start = std::chrono::steady_clock::now();
     const StageContext context{.device = device_,
@@ -143,7 +142,7 @@ void Renderer::createStages()
     const auto stage = [&](const char* name) { return std::make_unique<Stage>(context, name, all); };
     primary_ = stage("primary");
     accumulate_ = stage("accumulate");
-    pathTrace_ = canonical_ = temporal_ = spatialTrace_ = spatialGather_ = nullptr;
+    for (std::unique_ptr<Stage>* other : {&pathTrace_, &canonical_, &temporal_, &spatialTrace_, &spatialGather_}) other->reset();
     if (settings_.method == Method::Pt) {
         pathTrace_ = stage("path_trace");
     } else {
@@ -193,7 +192,7 @@ void Renderer::renderFrame()
     frame_.frame = uint32_t(frameCount_);
     frame_.slice = uint32_t(frameCount_ & 1);
     // The same camera ray sees the same point: shifts between the two frames are identities, and left out.
-    frame_.sameView = features_ == Features::Needed && settings_.pixelFilter == PixelFilter::Center &&
+    frame_.sameView = featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center &&
                       std::memcmp(&frame_.camera, &frame_.previousCamera, sizeof(frame_.camera)) == 0;
     device_.queue().writeValue(frameUniform_, frame_);
     gpu::CommandEncoder encoder = device_.createCommandEncoder("frame");

@@ -40,12 +40,10 @@ struct RenderStats {
 class Renderer
 {
   public:
-    // What to leave out. Everything compiles all features and replays even what cannot have changed; it gives the same
-    // picture as Needed, slower: for tests and benchmarks.
-    enum class Features { Needed, Everything };
-
+    // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same picture,
+    // slower: for tests and benchmarks.
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-             const std::function<void(double)>& bvhProgress = {}, Features features = Features::Needed);
+             const std::function<void(double)>& bvhProgress = {}, scene::FeatureSet featureSet = scene::FeatureSet::Needed);
 
     void renderFrame();                // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
@@ -71,7 +69,7 @@ class Renderer
 
     gpu::Device& device_;
     Settings settings_;
-    Features features_;
+    scene::FeatureSet featureSet_;
     scene::SceneFeatures sceneFeatures_;
     bool orthographic_ = false;
     double lengthScale_ = 1, radianceScale_ = 1;

@@ -2,6 +2,8 @@
 
 #include "shaders/shared/types.h"
 
+#include <algorithm>
+
 namespace passes
 {
 
@@ -17,20 +19,26 @@ NamedBuffers namedBy(const gpu::ComputePipeline& pipeline, const NamedBuffers& b
     return named;
 }
 
+bool uses(const gpu::ComputePipeline& pipeline, uint32_t set)
+{
+    return std::ranges::any_of(pipeline.bindings(), [&](const gpu::Binding& binding) { return binding.set == set; });
+}
+
 } // namespace
 
 Stage::Stage(const StageContext& context, const std::string& name, const NamedBuffers& buffers)
     : pipeline_(context.device.createComputePipeline({.label = name, .constants = constants(context.variant)})),
       frameGroup_(context.device.createBindGroup(
           {.label = "frame", .pipeline = &pipeline_, .set = SET_FRAME, .buffers = context.frame})),
-      sceneGroup_(context.scene.bind(context.device, pipeline_)),
+      usesScene_(uses(pipeline_, SET_SCENE)),
+      sceneGroup_(usesScene_ ? context.scene.bind(context.device, pipeline_) : gpu::BindGroup()),
       ownGroup_(context.device.createBindGroup({.label = name, .pipeline = &pipeline_, .set = SET_PASS, .buffers = namedBy(pipeline_, buffers)}))
 {
 }
 
 void Stage::encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const
 {
-    encoder.dispatch({.pipeline = &pipeline_, .groups = {&frameGroup_, &sceneGroup_, &ownGroup_}, .threads = threads});
+    encoder.dispatch({.pipeline = &pipeline_, .groups = {&frameGroup_, usesScene_ ? &sceneGroup_ : nullptr, &ownGroup_}, .threads = threads});
 }
 
 } // namespace passes

@@ -34,7 +34,9 @@ class Stage
 
   private:
     gpu::ComputePipeline pipeline_;
-    gpu::BindGroup frameGroup_, sceneGroup_, ownGroup_;
+    gpu::BindGroup frameGroup_;
+    bool usesScene_;
+    gpu::BindGroup sceneGroup_, ownGroup_;
 };
 
 } // namespace passes

@@ -22,7 +22,7 @@ std::string text(T value)
 static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY && uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
               uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
 
-Variant fullVariant(const Settings& settings, bool orthographic)
+Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic)
 {
     Variant v;
     v.MAX_BOUNCES = settings.maxBounces;
@@ -32,12 +32,6 @@ Variant fullVariant(const Settings& settings, bool orthographic)
         v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
         v.SHIFT_MAP = uint32_t(settings.shift);
     }
-    return v;
-}
-
-Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic)
-{
-    Variant v = fullVariant(settings, orthographic);
     v.HAS_ALPHA = features.alpha;
     v.HAS_SPECULAR = features.specular;
     v.HAS_ROUGH = features.rough;

@@ -23,9 +23,6 @@ struct Variant {
     bool operator==(const Variant&) const = default;
 };
 
-// Everything on, as if the scene used every feature: the picture must not change, only the time.
-Variant fullVariant(const Settings& settings, bool orthographic);
-
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic);
 
 std::vector<gpu::Constant> constants(const Variant& variant);

@@ -40,21 +40,20 @@ void main()
         fThere[c] = r[c].f;
         fHere[c] = old[c].f;
     }
-    if (frame.sameView == 0u) {
-        for (uint way = 0u; way < 2u; ++way) { // a loop, so that the walk is compiled once
-            bool backward = way != 0u;
-            vec3 f[MAX_RESERVOIRS];
-            Reservoir subjects[MAX_RESERVOIRS];
-            Domain to = there;
-            subjects = r;
-            if (!backward) {
-                to = here;
-                subjects = old;
-            }
-            shiftInto(to, subjects, f);
-            if (backward) fThere = f;
-            else fHere = f;
+    uint ways = frame.sameView != 0u ? 0u : 2u; // none: all shifts are identities
+    for (uint way = 0u; way < ways; ++way) {    // a loop, so that the walk is compiled once
+        bool backward = way != 0u;
+        vec3 f[MAX_RESERVOIRS];
+        Reservoir subjects[MAX_RESERVOIRS];
+        Domain to = there;
+        subjects = r;
+        if (!backward) {
+            to = here;
+            subjects = old;
         }
+        shiftInto(to, subjects, f);
+        if (backward) fThere = f;
+        else fHere = f;
     }
     uint confidence = loadReservoirsConfidence(pixel);
     float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs

@@ -22,12 +22,20 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
     const Limits& limits = device.physical.adapter.limits;
     const std::string& deviceName = device.physical.adapter.name;
 
-    // Tables count, whatever they are here: elsewhere they are storage buffers.
-    const auto storage =
-        std::ranges::count_if(shader.bindings, [](const Binding& b) { return b.kind != Binding::Kind::Uniform; });
+    // Ten buffers that shaders write or read as such, wherever the program may go; tables can be textures or texel buffers
+    // elsewhere, and count only where they are storage buffers, against what this device has.
+    const auto count = [&](Binding::Kind kind) {
+        return std::ranges::count_if(shader.bindings, [&](const Binding& b) { return b.kind == kind; });
+    };
+    const auto storage = count(Binding::Kind::Storage);
     if (storage > limits.storageBuffersPerStage)
-        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the limit of {}.", label, storage,
+        throw Error("Shader \"{}\" declares {} storage buffers, more than the limit of {}.", label, storage,
                     limits.storageBuffersPerStage);
+    const auto all = storage + (limits.tablesAreTexelBuffers ? 0 : count(Binding::Kind::Table));
+    const uint32_t most = device.properties.limits.maxPerStageDescriptorStorageBuffers;
+    if (all > most)
+        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of device \"{}\".", label, all, most,
+                    deviceName);
 
     uint64_t invocations = 1;
     for (uint32_t axis = 0; axis < 3; ++axis) {

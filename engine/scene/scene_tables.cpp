@@ -56,6 +56,11 @@ glm::uvec2 encodeColor(const glm::vec4& color)
     return {glm::packHalf2x16({color.x, color.y}), glm::packHalf2x16({color.z, color.w})};
 }
 
+SceneFeatures everything()
+{
+    return {.alpha = true, .specular = true, .rough = true, .dirac = true, .transmission = true, .solid = true, .emissive = true, .punctual = true, .directional = true, .environment = true, .unlit = true, .vertexColors = true, .secondUv = true, .textureTransform = true, .baseColorTexture = true, .metallicRoughnessTexture = true, .normalMap = true, .emissiveTexture = true, .transmissionTexture = true, .specularTexture = true, .manyMaterials = true};
+}
+
 uint32_t attributeRows(const SceneFeatures& features)
 {
     if (features.secondUv || features.vertexColors) return shared::ATTRIBUTE_ROWS_FULL;
@@ -111,7 +116,8 @@ void requireFits(const char* what, uint64_t rows, uint64_t maxTableBytes)
 
 } // namespace
 
-SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress)
+SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
+                            FeatureSet featureSet)
 {
     SceneTables tables;
     const double radius = radiusOf(scene);
@@ -130,6 +136,8 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     tables.features.directional = lights.counts.directionals > 0;
     tables.features.environment = lights.counts.environments > 0;
 
+    if (featureSet == FeatureSet::Everything) tables.features = everything();
+
     shared::SceneUniform& uniform = tables.uniform;
     uniform.attributeRows = attributeRows(tables.features);
     requireFits("triangles", scene.triangles.size() * uniform.attributeRows, maxTableBytes);
@@ -144,11 +152,12 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     uniform.materialOffset = append(materials.rows);
     uniform.lightOffset = append(lights.lights);
     uniform.punctualOffset = append(lights.punctual);
-    uniform.environmentOffset = append(lights.environment);
+    const bool black = tables.features.environment && lights.environment.empty(); // asked for, but the scene has none
+    uniform.environmentOffset = append(black ? std::vector<glm::uvec4>{glm::uvec4(0)} : lights.environment);
     uniform.environmentAliasOffset = append(lights.environmentAliases);
     uniform.lightCount = uint32_t(lights.lights.size());
-    uniform.environmentWidth = scene.environment.width;
-    uniform.environmentHeight = scene.environment.height;
+    uniform.environmentWidth = black ? 1 : scene.environment.width;
+    uniform.environmentHeight = black ? 1 : scene.environment.height;
     uniform.environmentPick = lights.environmentPick;
     uniform.radius = float(radius * tables.lengthScale);
     requireFits("textures", tables.texels.size(), maxTableBytes);

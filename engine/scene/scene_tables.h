@@ -42,6 +42,9 @@ struct SceneFeatures {
     bool manyMaterials = false;
 };
 
+// What the tables and shaders provide for: what the scene needs, or everything. The picture is the same.
+enum class FeatureSet { Needed, Everything };
+
 struct LightCounts {
     uint64_t emissiveTriangles = 0;
     uint64_t points = 0;
@@ -63,6 +66,7 @@ struct SceneTables {
 };
 
 // Throws Error when a table would exceed `maxTableBytes`.
-SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {});
+SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {},
+                            FeatureSet featureSet = FeatureSet::Needed);
 
 } // namespace scene

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One storage buffer more than is portable: ten blocks and a table.
+// One storage buffer more than is portable: eleven blocks and a table.
 #include "lib/table.glsl"
 #include "shared/types.h"
 layout(local_size_x = 1) in;
@@ -16,8 +16,9 @@ BLOCK(6);
 BLOCK(7);
 BLOCK(8);
 BLOCK(9);
+BLOCK(10);
 
 void main()
 {
-    value0 = value1 + value2 + value3 + value4 + value5 + value6 + value7 + value8 + value9 + FETCH(Elements, 0).x;
+    value0 = value1 + value2 + value3 + value4 + value5 + value6 + value7 + value8 + value9 + value10 + FETCH(Elements, 0).x;
 }

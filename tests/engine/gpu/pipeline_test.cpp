@@ -133,7 +133,7 @@ TEST_F(Pipeline, LimitsAreErrorsThatNameTheConstant)
     EXPECT_CONTAINS(
         errorOf(
             [&] { device().createComputePipeline({.label = "many", .shader = TEST_SPIRV_DIR "/many_buffers_test"}); }),
-        "declares 11 storage buffers and tables, more than the limit of 10");
+        "declares 11 storage buffers, more than the limit of 10");
 }
 
 TEST_F(Pipeline, BindGroupsListMissingUnknownAndUnfitBuffers)
