@@ -129,29 +129,50 @@ void Renderer::createStages()
 {
     variant_ = makeVariant(sceneFeatures_, settings_, orthographic_);
     stats_.variant = describe(variant_);
+    stats_.compileSeconds = 0;
+    const auto stage = [&](const char* name) { return makeStage(name, variant_); };
+    primary_ = stage("primary");
+    accumulate_ = stage("accumulate");
+    for (std::unique_ptr<Stage>* other : {&pathTrace_, &canonical_, &temporalResting_, &temporalMoving_, &spatialTrace_, &spatialGather_}) other->reset();
+    if (settings_.method == Method::Pt) {
+        pathTrace_ = stage("path_trace");
+    } else {
+        canonical_ = stage("canonical");
+        if (settings_.spatial > 0) spatialTrace_ = stage("spatial_trace");
+        spatialGather_ = stage("spatial_gather");
+    }
+}
+
+std::unique_ptr<Stage> Renderer::makeStage(const char* name, const Variant& variant)
+{
     const auto start = std::chrono::steady_clock::now();
     const StageContext context{.device = device_,
                                .scene = *scene_,
-                               .variant = variant_,
+                               .variant = variant,
                                .frame = {{"Frame", &frameUniform_}, {"Counters", &counters_}}};
     const NamedBuffers all = {{"Surfaces", &surfaces_},     {"Color", &color_},
                               {"Film", &film_},             {"Reservoirs", &reservoirs_},
                               {"History", &history_},       {"ReservoirPaths", &reservoirPaths_},
                               {"Neighbors", &neighbors_},   {"HistoryPaths", &historyPaths_},
                               {"Shifted", &shifted_}};
-    const auto stage = [&](const char* name) { return std::make_unique<Stage>(context, name, all); };
-    primary_ = stage("primary");
-    accumulate_ = stage("accumulate");
-    for (std::unique_ptr<Stage>* other : {&pathTrace_, &canonical_, &temporal_, &spatialTrace_, &spatialGather_}) other->reset();
-    if (settings_.method == Method::Pt) {
-        pathTrace_ = stage("path_trace");
-    } else {
-        canonical_ = stage("canonical");
-        if (settings_.temporal) temporal_ = stage("temporal");
-        if (settings_.spatial > 0) spatialTrace_ = stage("spatial_trace");
-        spatialGather_ = stage("spatial_gather");
+    auto stage = std::make_unique<Stage>(context, name, all);
+    stats_.compileSeconds += secondsSince(start);
+    return stage;
+}
+
+// Compiled when first needed. While the camera rests each camera ray sees the same point again: shifts between the two
+// frames are identities, and left out.
+const Stage& Renderer::temporal()
+{
+    const bool resting = featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center &&
+                         std::memcmp(&frame_.camera, &frame_.previousCamera, sizeof(frame_.camera)) == 0;
+    std::unique_ptr<Stage>& stage = resting ? temporalResting_ : temporalMoving_;
+    if (!stage) {
+        Variant variant = variant_;
+        variant.SAME_VIEW = resting;
+        stage = makeStage("temporal", variant);
     }
-    stats_.compileSeconds = secondsSince(start);
+    return *stage;
 }
 
 void Renderer::apply(const Settings& settings)
@@ -181,7 +202,7 @@ void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
     primary_->encode(encoder, pixels);
     if (pathTrace_) pathTrace_->encode(encoder, pixels);
     if (canonical_) canonical_->encode(encoder, pixels);
-    if (temporal_ && historyFrames_ > 0) temporal_->encode(encoder, pixels);
+    if (settings_.temporal && canonical_ && historyFrames_ > 0) temporal().encode(encoder, pixels);
     if (spatialTrace_) spatialTrace_->encode(encoder, {pixels.x, pixels.y, settings_.spatial});
     if (spatialGather_) spatialGather_->encode(encoder, pixels);
     accumulate_->encode(encoder, pixels);
@@ -191,9 +212,6 @@ void Renderer::renderFrame()
 {
     frame_.frame = uint32_t(frameCount_);
     frame_.slice = uint32_t(frameCount_ & 1);
-    // The same camera ray sees the same point: shifts between the two frames are identities, and left out.
-    frame_.sameView = featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center &&
-                      std::memcmp(&frame_.camera, &frame_.previousCamera, sizeof(frame_.camera)) == 0;
     device_.queue().writeValue(frameUniform_, frame_);
     gpu::CommandEncoder encoder = device_.createCommandEncoder("frame");
     if (frameCount_ == 0) {

@@ -63,6 +63,8 @@ class Renderer
   private:
     void createBuffers();
     void createStages();
+    std::unique_ptr<Stage> makeStage(const char* name, const Variant& variant);
+    const Stage& temporal();
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
@@ -84,7 +86,7 @@ class Renderer
     std::unique_ptr<scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_;
-    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporal_, spatialTrace_, spatialGather_, accumulate_;
+    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_, spatialGather_, accumulate_;
 };
 
 } // namespace passes

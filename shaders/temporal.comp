@@ -40,8 +40,8 @@ void main()
         fThere[c] = r[c].f;
         fHere[c] = old[c].f;
     }
-    uint ways = frame.sameView != 0u ? 0u : 2u; // none: all shifts are identities
-    for (uint way = 0u; way < ways; ++way) {    // a loop, so that the walk is compiled once
+    // SAME_VIEW: every pixel sees what it saw, all shifts are identities. Else a loop, so that the walk is compiled once.
+    for (uint way = 0u; !SAME_VIEW && way < 2u; ++way) {
         bool backward = way != 0u;
         vec3 f[MAX_RESERVOIRS];
         Reservoir subjects[MAX_RESERVOIRS];

@@ -46,7 +46,7 @@ bool alike(Domain a, Domain b)
 bool reproject(Domain here, uint pixel, out uint previousPixel)
 {
     previousPixel = pixel;
-    if (frame.sameView != 0u) return true;
+    if (SAME_VIEW) return true;
     vec3 d = here.position - frame.previousCamera.position.xyz;
     float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.previousCamera.forward.xyz);
     if (depth <= 0.0) return false;
@@ -141,7 +141,7 @@ void join(Vertex x)
         joining |= 1u << c;
         r = moving[c].reconnection; // paths of one seed and one r have the same x_r
     }
-    for (bool pending = joining != 0u; pending; pending = false) { // lavapipe skips loops, not the body of an `if`
+    if (joining != 0u) {
         bool infinite = r.triangle == NO_HIT;
         uint triangle = infinite ? 0u : r.triangle;
         vec3 d = infinite ? r.direction : hitPosition(triangle, r.barycentric) - x.s.position;

@@ -27,12 +27,12 @@ struct FrameUniform {
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
     uint slice;          // which half of Surfaces is this frame's: 0 or 1; the other is the previous frame's
-    uint sameView;       // 1: every pixel sees what it saw in the previous frame, so shifts between them are identities
     uint maxConfidence;  // M_c, frames
     uint neighborCount;  // K
     float neighborRadius; // pixels
     uint padding0;
     uint padding1;
+    uint padding2;
     vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };

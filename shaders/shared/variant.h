@@ -31,7 +31,8 @@
     X(22, bool, HAS_SPECULAR_TEXTURE, true, "specular weight and color textures")                                      \
     X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")                                                    \
     X(24, uint, RESERVOIR_COUNT, 1u, "reservoirs of a pixel")                                                          \
-    X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")
+    X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")                                 \
+    X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")
 
 
 SHARED_BEGIN
