@@ -3,9 +3,17 @@
 // The includer declares the tables Nodes and Triangles, the constant bool HAS_ALPHA and
 // bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of flagged triangles only.
 //
-// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing, hence stores to the stack without
-// conditions and planes picked by the ray's signs. The inner loop tests at its start: one that tests at its end inside
-// another such loop is compiled wrongly by SwiftShader.
+// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
+// least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
+// ray's signs. SwiftShader, which reads tables from storage buffers, compiles a nest of such loops wrongly: there the
+// inner one tests at its start (tests/bench/LOG.md).
+#ifdef TABLES_IN_STORAGE
+#define LOOP_BEGIN(CONDITION) while (CONDITION) {
+#define LOOP_END(CONDITION) }
+#else
+#define LOOP_BEGIN(CONDITION) do {
+#define LOOP_END(CONDITION) } while (CONDITION);
+#endif
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
@@ -206,16 +214,17 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
         group = frontToBack(hits >> 24, r.signs) | ((links.x >> 16) & 0xff00u);
 
         uint triangles = hits & 0xffffffu;
-        while (triangles != 0u) {
-            uint bit = uint(findLSB(triangles));
+        LOOP_BEGIN(triangles != 0u)
+            bool valid = triangles != 0u;
+            uint bit = valid ? uint(findLSB(triangles)) : 0u;
             triangles &= triangles - 1u;
-            uint record = BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(links.x & bitsBelow(bit))));
+            uint record = valid ? BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(links.x & bitsBelow(bit)))) : 0u;
             uvec4 v0 = FETCH(Triangles, record);
             vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
             vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
             float t;
             vec2 barycentric;
-            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric);
+            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
             uint triangle = v0.w & ~BVH_ALPHA_FLAG;
             met = met && t >= r.tMin && (t < hit.t || (t == hit.t && triangle < hit.triangle));
             if (HAS_ALPHA) {
@@ -223,7 +232,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             }
             if (met) hit = Hit(triangle, barycentric, t);
             if (any && met) triangles = 0u;
-        }
+        LOOP_END(triangles != 0u)
 
         if ((group & 255u) == 0u) {
             more = depth != 0u;
