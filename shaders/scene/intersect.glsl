@@ -186,32 +186,28 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     return met;
 }
 
-// Depth-first; a group is the rest of one node's child nodes: bits 0..7 those to visit, front to back; 8..15 all that
-// are.
+// Depth-first. A group is the rest of one node's child nodes: those to visit in bits 0..7, front to back; above them
+// what the slot adds to.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
 {
-    uint stackBase[BVH_STACK_SIZE];
-    uint stackGroup[BVH_STACK_SIZE];
+    uint stack[BVH_STACK_SIZE]; // of groups
     uint depth = 0u;
 
     TraversalRay r = prepare(ray);
     Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
-    uint base = 0u;
-    uint group = 1u; // the root: of its parent's child nodes the first in order, none before it
+    uint group = 1u << r.signs; // slot 0 of base 0: the root
     bool more = true;
     do {
-        uint slot = uint(findLSB(group & 255u)) ^ r.signs;
-        uint node = BVH_NODE_STRIDE * (base + uint(bitCount((group >> 8) & bitsBelow(slot))));
+        uint slot = uint(findLSB(group)) ^ r.signs;
+        uint node = BVH_NODE_STRIDE * ((group >> 8) + slot);
         group &= group - 1u;
-        stackBase[depth] = base;
-        stackGroup[depth] = group;
+        stack[depth] = group;
         depth += (group & 255u) != 0u ? 1u : 0u;
 
         uvec4 links = FETCH(Nodes, node + 1u);
         uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
                                  FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
-        base = links.y;
-        group = frontToBack(hits >> 24, r.signs) | ((links.x >> 16) & 0xff00u);
+        group = links.y | frontToBack(hits >> 24, r.signs);
 
         uint triangles = hits & 0xffffffu;
         LOOP_BEGIN(triangles != 0u)
@@ -234,12 +230,11 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             if (any && met) triangles = 0u;
         LOOP_END(triangles != 0u)
 
-        if ((group & 255u) == 0u) {
-            more = depth != 0u;
-            depth = more ? depth - 1u : 0u;
-            base = stackBase[depth];
-            group = stackGroup[depth];
-        }
+        bool empty = (group & 255u) == 0u;
+        more = !empty || depth != 0u;
+        depth -= empty && more ? 1u : 0u;
+        uint top = stack[depth];
+        group = empty ? top : group;
         if (any && hit.triangle != NO_HIT) more = false;
     } while (more);
     hit.t = max(hit.t + r.advance, 0.0);
