@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
-#include "engine/scene/open_scene.h"
 
 namespace scene
 {
@@ -81,28 +80,14 @@ TEST(Environment, FileAndScaleReplaceTheScenesOwn)
 {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "trichrome_environment_test.exr";
     image::write(file, {2, 1, {glm::vec3(1), glm::vec3(3)}}, {});
-    const Scene scene = openScene("lamps", {.environment = file.string(), .environmentScale = 2});
+    Scene scene;
+    scene.environment = {1, 1, {glm::vec3(5)}};
+    setEnvironment(scene, "", 3);
+    EXPECT_EQ(scene.environment.radiance, std::vector<glm::vec3>{glm::vec3(15)});
+    setEnvironment(scene, file, 2);
     EXPECT_EQ(scene.environment.radiance, (std::vector<glm::vec3>{glm::vec3(6), glm::vec3(2)}));
     std::filesystem::remove(file);
-    EXPECT_THROW(openScene("lamps", {.environment = file.string()}), Error);
-
-    const Environment own = openScene("lamps").environment;
-    const Environment brighter = openScene("lamps", {.environmentScale = 3}).environment;
-    ASSERT_FALSE(own.radiance.empty());
-    EXPECT_EQ(brighter.radiance[0], own.radiance[0] * 3.0f);
-}
-
-TEST(OpenScene, NamesWhatThereIsWhenTheNameIsNeither)
-{
-    try {
-        openScene("kornell");
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()), "\"kornell\" is neither a built-in scene (hall, cornell, lamps, dim, "
-                                             "furnace) nor a .gltf or .glb file.");
-    }
-    EXPECT_THROW(openScene("missing.gltf"), Error);
-    EXPECT_FALSE(openScene("cornell").triangles.empty());
+    EXPECT_THROW(setEnvironment(scene, file, 1), Error);
 }
 
 } // namespace scene
