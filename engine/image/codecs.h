@@ -1,5 +1,5 @@
 #pragma once
-// PNG and JPEG in memory to and from RGBA samples. The bytes are untrusted: no allocation beyond what they can justify.
+// Picture files in memory, to and from samples. The bytes are untrusted: no allocation beyond what they can justify.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +30,15 @@ template <class Sample>
 Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr);
 
 Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& what);
+
+// OpenEXR: R, G and B, or Y alone, of any channel type.
+bool isExr(std::span<const std::byte> bytes);
+Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr);
+std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata);
+
+// Radiance RGBE.
+bool isHdr(std::span<const std::byte> bytes);
+Image decodeHdr(std::span<const std::byte> bytes, const std::string& what);
 
 // 8-bit RGB, `rgb` holds 3 * width * height samples.
 std::vector<std::byte> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgb,

@@ -9,7 +9,8 @@
 
 #include <glm/glm.hpp>
 
-namespace image {
+namespace image
+{
 
 struct Image {
     uint32_t width = 0;
@@ -20,19 +21,23 @@ struct Image {
     const glm::vec3& at(uint32_t x, uint32_t y) const { return pixels[size_t{y} * width + x]; }
 };
 
-// Key and value pairs, in order: EXR string attributes, PNG tEXt chunks.
+// Key and value pairs: EXR string attributes (read back in the keys' order), PNG text chunks.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// EXR: float32 R, G, B, ZIP. PNG: 8 bit, Reinhard c/(c+1) per channel then sRGB. By extension; written whole or not at all.
-// Throws Error: other extension, cannot write.
+// EXR: float32 R, G, B, ZIP. PNG: 8 bit, Reinhard c/(c+1) per channel then sRGB. By extension; written whole or not at
+// all. Throws Error: other extension, cannot write.
 void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata);
+
+// Throws the Error that write() would for this name: to be asked before hours of rendering.
+void requireWritable(const std::filesystem::path& path);
 
 struct Loaded {
     Image image;
     Metadata metadata;
 };
-// EXR (any channel type, R G B needed) or PNG (8/16 bit, decoded sRGB and, as written by us, un-tonemapped when the metadata
-// says so). Throws Error: missing, malformed, larger than 2^28 pixels or than the file could hold.
+// EXR (any channel type; R G B, or Y alone), Radiance HDR, PNG (8/16 bit, decoded sRGB and, when our metadata says so,
+// un-tonemapped) or JPEG, told apart by their first bytes. Pixels as the file has them, non-finite ones too.
+// Throws Error: missing, malformed, larger than 2^28 pixels or than the file could hold.
 Loaded read(const std::filesystem::path& path);
 
 } // namespace image

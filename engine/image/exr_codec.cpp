@@ -1,0 +1,188 @@
+// EXR through OpenEXR, which reports by exceptions of its own.
+
+#include "engine/image/codecs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include "engine/base/error.h"
+
+namespace image
+{
+
+namespace
+{
+
+constexpr int MAX_SIDE = 1 << 16;
+constexpr int MAX_TILE = 1 << 12; // per side; OpenEXR allocates whole rows of tiles
+constexpr int ROWS_AT_ONCE = 256; // memory grows with what was decoded, not with what the header claims
+
+// OpenEXR gives these names a type or a meaning of its own; ours get a prefix in the file.
+constexpr std::array RESERVED = {"name", "type", "version", "chunkCount", "view", "tiles", "maxSamplesPerPixel"};
+constexpr std::string_view PREFIX = "trichrome.";
+
+class MemoryInput : public Imf::IStream
+{
+  public:
+    explicit MemoryInput(std::span<const std::byte> bytes) : IStream("memory"), bytes_(bytes) {}
+
+    bool read(char to[], int count) override
+    {
+        const auto size = static_cast<size_t>(count);
+        if (position_ > bytes_.size() || size > bytes_.size() - position_) throw Iex::InputExc("it is cut short");
+        std::memcpy(to, bytes_.data() + position_, size);
+        position_ += size;
+        return position_ < bytes_.size();
+    }
+    uint64_t tellg() override { return position_; }
+    void seekg(uint64_t position) override { position_ = position; }
+
+  private:
+    std::span<const std::byte> bytes_;
+    uint64_t position_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream
+{
+  public:
+    MemoryOutput() : OStream("memory") {}
+
+    void write(const char from[], int count) override
+    {
+        const auto size = static_cast<size_t>(count);
+        if (position_ + size > bytes.size()) bytes.resize(position_ + size);
+        std::memcpy(bytes.data() + position_, from, size);
+        position_ += size;
+    }
+    uint64_t tellp() override { return position_; }
+    void seekp(uint64_t position) override { position_ = position; }
+
+    std::vector<std::byte> bytes;
+
+  private:
+    uint64_t position_ = 0;
+};
+
+// Where channel `c` of the pixel (x, y) of the data window lies, for OpenEXR: rows from `firstRow` on are at `pixels`.
+Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int firstRow)
+{
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+    const int64_t origin = firstRow * width + window.min.x;
+    auto* base = reinterpret_cast<char*>(pixels) + c * static_cast<int>(sizeof(float)) -
+                 origin * static_cast<int64_t>(sizeof(glm::vec3));
+    return {Imf::FLOAT, base, sizeof(glm::vec3), static_cast<size_t>(width) * sizeof(glm::vec3)};
+}
+
+Image readPixels(Imf::InputFile& file, bool gray)
+{
+    const Imath::Box2i window = file.header().dataWindow();
+    const auto width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
+    Image image{width, 0, {}};
+    for (int y = window.min.y; y <= window.max.y; y += ROWS_AT_ONCE) {
+        const int last = std::min(y + ROWS_AT_ONCE - 1, window.max.y);
+        image.height += static_cast<uint32_t>(last - y + 1);
+        image.pixels.resize(size_t{width} * image.height);
+        glm::vec3* rows = &image.pixels[size_t{width} * static_cast<size_t>(y - window.min.y)];
+        Imf::FrameBuffer buffer;
+        if (gray)
+            buffer.insert("Y", sliceOf(rows, 0, window, y));
+        else
+            for (int c = 0; c < 3; ++c) buffer.insert(std::string(1, "RGB"[c]), sliceOf(rows, c, window, y));
+        file.setFrameBuffer(buffer);
+        file.readPixels(y, last);
+    }
+    if (gray) {
+        for (glm::vec3& pixel : image.pixels) pixel = glm::vec3(pixel.x);
+    }
+    return image;
+}
+
+bool isReserved(const std::string& key)
+{
+    return std::find(RESERVED.begin(), RESERVED.end(), key) != RESERVED.end();
+}
+
+Metadata readMetadata(const Imf::Header& header)
+{
+    Metadata metadata;
+    for (auto entry = header.begin(); entry != header.end(); ++entry) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
+        if (!text) continue;
+        std::string key = entry.name();
+        if (key.starts_with(PREFIX) && isReserved(key.substr(PREFIX.size()))) key = key.substr(PREFIX.size());
+        metadata.emplace_back(key, text->value());
+    }
+    return metadata;
+}
+
+Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
+{
+    MemoryInput input(bytes);
+    Imf::Header::setMaxImageSize(MAX_SIDE, MAX_SIDE);
+    Imf::Header::setMaxTileSize(MAX_TILE, MAX_TILE);
+    Imf::InputFile file(input, 0);
+    const Imf::ChannelList& channels = file.header().channels();
+    const bool color = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+    if (!color && (!channels.findChannel("Y") || channels.findChannel("RY")))
+        throw Error("{} has neither the channels R, G, B nor Y alone.", what);
+
+    const Imath::Box2i window = file.header().dataWindow();
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+    const int64_t height = int64_t{window.max.y} - window.min.y + 1;
+    if (static_cast<uint64_t>(width * height) > MAX_PIXELS)
+        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
+    if (metadata) *metadata = readMetadata(file.header());
+    return readPixels(file, !color);
+}
+
+} // namespace
+
+bool isExr(std::span<const std::byte> bytes)
+{
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
+}
+
+Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
+{
+    try {
+        return decode(bytes, what, metadata);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& reason) {
+        std::string text = reason.what();
+        while (!text.empty() && (text.back() == '.' || text.back() == '\n')) text.pop_back();
+        throw Error("{} is no valid EXR: {}.", what, text);
+    }
+}
+
+std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata)
+{
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    for (const auto& [key, value] : metadata)
+        header.insert(isReserved(key) ? std::string(PREFIX) + key : key, Imf::StringAttribute(value));
+
+    MemoryOutput output;
+    {
+        Imf::OutputFile file(output, header, 0);
+        Imf::FrameBuffer buffer;
+        auto* pixels = const_cast<glm::vec3*>(image.pixels.data()); // only read: Slice serves both directions
+        for (int c = 0; c < 3; ++c) buffer.insert(std::string(1, "RGB"[c]), sliceOf(pixels, c, header.dataWindow(), 0));
+        file.setFrameBuffer(buffer);
+        file.writePixels(static_cast<int>(image.height));
+    }
+    return std::move(output.bytes);
+}
+
+} // namespace image

@@ -1,0 +1,151 @@
+#include "engine/image/image.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/files.h"
+
+namespace
+{
+
+class ImageFile : public testing::Test
+{
+  protected:
+    void SetUp() override
+    {
+        std::string pattern = testing::TempDir() + "trichrome_image_XXXXXX";
+        folder = ::mkdtemp(pattern.data());
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    std::filesystem::path save(const std::string& name, std::string_view bytes) const
+    {
+        std::ofstream(folder / name, std::ios::binary) << bytes;
+        return folder / name;
+    }
+    static std::string messageOf(const std::filesystem::path& path)
+    {
+        try {
+            image::read(path);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+
+    std::filesystem::path folder;
+};
+
+// Every pixel differs; the values span what radiance does.
+image::Image sample(uint32_t width, uint32_t height)
+{
+    image::Image image{width, height, {}};
+    for (uint32_t i = 0; i < width * height; ++i)
+        image.pixels.emplace_back(0.001f * float(i), std::exp2(float(i % 40) - 20), 1 / (1 + float(i)));
+    return image;
+}
+
+std::string valueOf(const image::Metadata& metadata, const std::string& key)
+{
+    for (const auto& [name, value] : metadata)
+        if (name == key) return value;
+    return "(none)";
+}
+
+} // namespace
+
+TEST_F(ImageFile, ExrKeepsEveryBitAndTheMetadata)
+{
+    image::Image image = sample(37, 300); // more rows than are read at once
+    image.at(3, 2) = {std::numeric_limits<float>::quiet_NaN(), -1, std::numeric_limits<float>::infinity()};
+    image::write(folder / "a.exr", image,
+                 {{"seed", "7"}, {"version", "0.1"}, {"max-confidence", "20"}, {"camera", ""}});
+    const image::Loaded back = image::read(folder / "a.exr");
+    ASSERT_EQ(back.image.width, 37u);
+    ASSERT_EQ(back.image.height, 300u);
+    EXPECT_EQ(std::memcmp(back.image.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(glm::vec3)), 0);
+    EXPECT_EQ(back.metadata,
+              (image::Metadata{{"camera", ""}, {"max-confidence", "20"}, {"seed", "7"}, {"version", "0.1"}}));
+}
+
+TEST_F(ImageFile, PngIsReinhardAndSrgbAndReadsBack)
+{
+    image::Image image{5, 1, {glm::vec3(0), glm::vec3(1), {1e9f, -3, 0.18f}, glm::vec3(0.25f), glm::vec3(4)}};
+    image::write(folder / "a.PNG", image, {{"method", "pt"}});
+    const image::Loaded back = image::read(folder / "a.PNG");
+    EXPECT_EQ(valueOf(back.metadata, "method"), "pt");
+    EXPECT_EQ(back.image.pixels[0], glm::vec3(0));
+    EXPECT_NEAR(back.image.pixels[1].x, 1, 0.02); // mapped to 0.5, encoded as 188
+    EXPECT_NEAR(back.image.pixels[2].y, 0, 1e-6);
+    EXPECT_NEAR(back.image.pixels[2].z, 0.18, 0.002);
+    EXPECT_GT(back.image.pixels[2].x, 200); // white: brighter than what 8 bits resolve
+    EXPECT_NEAR(back.image.pixels[3].x, 0.25, 0.003);
+    EXPECT_NEAR(back.image.pixels[4].x, 4, 0.1);
+}
+
+TEST_F(ImageFile, ForeignPngIsPlainSrgb)
+{
+    image::write(folder / "a.png", {1, 1, {glm::vec3(1)}}, {});
+    std::vector<std::byte> bytes = files::read(folder / "a.png");
+    std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    text.erase(text.find("tEXt") - 4, 12 + 11 + 1 + 22); // our mark; length, name, keyword, NUL, value, CRC
+    EXPECT_NEAR(image::read(save("b.png", text)).image.pixels[0].x, 0.5, 0.004);
+}
+
+TEST_F(ImageFile, ReadsRadianceHdr)
+{
+    std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n";
+    text += {char(128), char(64), char(0), char(129)}; // mantissa 128/256 * 2^1
+    text += {char(255), char(255), char(255), char(120)};
+    const image::Image image = image::read(save("a.hdr", text)).image;
+    ASSERT_EQ(image.height, 2u);
+    EXPECT_EQ(image.pixels[0], glm::vec3(1, 0.5f, 0));
+    EXPECT_EQ(image.pixels[1], glm::vec3(std::ldexp(255.0f, 120 - 136)));
+}
+
+TEST_F(ImageFile, MalformedFilesAreErrors)
+{
+    image::write(folder / "ok.exr", sample(64, 64), {});
+    const std::vector<std::byte> bytes = files::read(folder / "ok.exr");
+    const std::string exr(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (size_t length = 0; length < exr.size(); length += 37)
+        EXPECT_NE(messageOf(save("cut.exr", exr.substr(0, length))), "no error") << length;
+
+    std::string huge = exr; // the data window's right and lower ends
+    const size_t window = huge.find("dataWindow") + 10 + 1 + 6 + 1 + 4;
+    for (size_t i = 8; i < 16; ++i) huge[window + i] = i % 4 == 3 ? '\x7f' : '\xff';
+    EXPECT_NE(messageOf(save("huge.exr", huge)), "no error");
+
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    EXPECT_NE(messageOf(save("a.hdr", header + "-Y 2 +X 2\n1234")).find("cut short"), std::string::npos);
+    EXPECT_NE(messageOf(save("b.hdr", header + "-Y 60000 +X 60000\n1234")).find("60000 x 60000"), std::string::npos);
+    EXPECT_EQ(messageOf(save("c.txt", "hello")),
+              "Picture \"" + (folder / "c.txt").string() + "\" (5 bytes) is neither EXR, HDR, PNG nor JPEG.");
+}
+
+TEST_F(ImageFile, FlippedBytesOfAnExrNeverCrash)
+{
+    image::write(folder / "ok.exr", sample(20, 20), {{"a", "b"}});
+    const std::vector<std::byte> bytes = files::read(folder / "ok.exr");
+    for (size_t i = 4; i < 700 && i < bytes.size(); ++i) {
+        std::string broken(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        broken[i] = char(broken[i] ^ 0x81);
+        messageOf(save("broken.exr", broken)); // any picture or Error
+    }
+}
+
+TEST_F(ImageFile, WritesToNoOtherNames)
+{
+    EXPECT_THROW(image::write(folder / "a.jpg", sample(2, 2), {}), Error);
+    EXPECT_THROW(image::write(folder / "none" / "a.exr", sample(2, 2), {}), Error);
+    EXPECT_THROW(image::requireWritable(folder / "none" / "a.exr"), Error);
+    std::filesystem::create_directory(folder / "dir.exr");
+    EXPECT_THROW(image::requireWritable(folder / "dir.exr"), Error);
+    EXPECT_NO_THROW(image::requireWritable("a.exr"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "dir.exr"));
+}

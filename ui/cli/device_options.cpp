@@ -1,0 +1,38 @@
+#include "ui/cli/device_options.h"
+
+#include <cstdlib>
+
+namespace ui
+{
+
+namespace
+{
+
+// Where the XDG base directory specification wants caches; empty, and so no cache, when there is no home.
+std::string cacheDirectory()
+{
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    if (cache && *cache == '/') return std::string(cache) + "/trichrome";
+    const char* home = std::getenv("HOME");
+    return home && *home ? std::string(home) + "/.cache/trichrome" : "";
+}
+
+} // namespace
+
+void DeviceOptions::addTo(CLI::App& app)
+{
+    app.add_option("--device", device_,
+                   "Vulkan device, by index or part of its name, as info lists them; default: a discrete GPU before an "
+                   "integrated one before the CPU. Devices differ in the last bits of pixels only.")
+        ->option_text("NAME|INDEX");
+    app.add_option("--shaders", shaders_,
+                   "For development: compile the shaders of this directory instead of using those in the executable.")
+        ->option_text("DIRECTORY");
+}
+
+gpu::Device DeviceOptions::open() const
+{
+    return gpu::Device::create({.adapter = device_, .shaderDirectory = shaders_, .cacheDirectory = cacheDirectory()});
+}
+
+} // namespace ui

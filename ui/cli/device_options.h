@@ -1,0 +1,24 @@
+#pragma once
+// --device and --shaders: which Vulkan device, with which shaders.
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/gpu/gpu.h"
+
+namespace ui
+{
+
+class DeviceOptions
+{
+  public:
+    void addTo(CLI::App& app);                                      // must live until the options are read
+    gpu::Device open() const;                                       // throws Error
+    const std::string& shaderDirectory() const { return shaders_; } // empty: the embedded ones
+
+  private:
+    std::string device_, shaders_;
+};
+
+} // namespace ui

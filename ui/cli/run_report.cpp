@@ -1,0 +1,67 @@
+#include "ui/cli/run_report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace ui
+{
+
+const char* version()
+{
+    return TRICHROME_VERSION;
+}
+
+image::Metadata metadataOf(const RunReport& report)
+{
+    image::Metadata metadata = passes::toText(report.settings);
+    metadata.insert(metadata.end(), report.extra.begin(), report.extra.end());
+    metadata.emplace_back("settings-hash", passes::hash(report.settings));
+    metadata.emplace_back("scene", report.scene);
+    metadata.emplace_back("frames-done", std::to_string(report.frames));
+    metadata.emplace_back("partial", report.partial ? "yes" : "no");
+    metadata.emplace_back("device", report.adapter.name);
+    metadata.emplace_back("driver", report.adapter.driver);
+    metadata.emplace_back("version", version());
+    return metadata;
+}
+
+nlohmann::ordered_json toJson(const RunReport& report)
+{
+    nlohmann::ordered_json settings = passes::toJson(report.settings);
+    for (const auto& [name, value] : report.extra) settings[name] = value;
+    uint64_t rayCount = 0;
+    for (const auto& [kind, count] : report.stats.rays) rayCount += count;
+    const passes::RenderStats& stats = report.stats;
+    return {{"scene", report.scene},
+            {"method", settings["method"]},
+            {"device", report.adapter.name},
+            {"driver", report.adapter.driver},
+            {"width", report.settings.width},
+            {"height", report.settings.height},
+            {"frames", report.frames},
+            {"partial", report.partial},
+            {"wall_seconds", report.wallSeconds},
+            {"load_seconds", report.loadSeconds + stats.tablesSeconds},
+            {"bvh_seconds", stats.bvhSeconds},
+            {"compile_seconds", stats.compileSeconds},
+            {"stage_ms", stats.stageMilliseconds},
+            {"rays", stats.rays},
+            {"rays_per_second", report.wallSeconds > 0 ? double(rayCount) / report.wallSeconds : 0},
+            {"nonfinite", stats.nonFinite},
+            {"mean_rgb", {report.meanRgb.r, report.meanRgb.g, report.meanRgb.b}},
+            {"variant", stats.variant},
+            {"bvh", {{"nodes", stats.bvh.nodes}, {"bytes", stats.bvh.bytes}, {"sah_cost", stats.bvh.sahCost}}},
+            {"memory_bytes", stats.memoryBytes},
+            {"bytes_per_pixel", stats.bytesPerPixel},
+            {"settings", settings},
+            {"settings_hash", passes::hash(report.settings)},
+            {"version", version()}};
+}
+
+glm::dvec3 meanOf(const image::Image& picture)
+{
+    glm::dvec3 sum(0);
+    for (const glm::vec3& pixel : picture.pixels) sum += glm::dvec3(pixel);
+    return sum / double(std::max<size_t>(picture.pixels.size(), 1));
+}
+
+} // namespace ui

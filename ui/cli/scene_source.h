@@ -1,0 +1,17 @@
+#pragma once
+// What SCENE means on the command line.
+
+#include <string>
+
+#include "engine/scene/scene.h"
+#include "passes/settings.h"
+#include "ui/cli/progress.h"
+
+namespace ui
+{
+
+// A built-in scene by name, or a .gltf/.glb file; with the environment that the settings ask for. Its warnings go to
+// stderr, one line each. Throws Error.
+scene::Scene openScene(const std::string& nameOrFile, const passes::Settings& settings, Progress& progress);
+
+} // namespace ui

@@ -1,0 +1,33 @@
+#pragma once
+// The options of every setting, made from the one list of settings: --preset, --set, and one option per setting.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "passes/settings.h"
+
+namespace ui
+{
+
+class SettingsOptions
+{
+  public:
+    // Adds the options to `app`; must live until they are read. Values are checked while parsing (wrong usage).
+    void addTo(CLI::App& app);
+
+    // The defaults, then the preset, then --set in order, then the settings' own options. Throws Error: the preset.
+    passes::Settings read() const;
+
+    // Whether the command line itself, not a preset, says something about the setting.
+    bool given(const std::string& name) const;
+
+  private:
+    std::string preset_;
+    std::vector<std::string> assignments_;     // "name=value"
+    std::map<std::string, std::string> given_; // of the settings' own options
+};
+
+} // namespace ui

@@ -1,0 +1,15 @@
+#include "ui/commands/commands.h"
+
+namespace ui
+{
+
+std::span<const Command> commands()
+{
+    static const Command COMMANDS[] = {
+        {"render", "Renders a scene to a picture, without a window.", setUpRender},
+        {"info", "Devices and their limits; or what a scene holds, and what is compiled for it.", setUpInfo},
+    };
+    return COMMANDS;
+}
+
+} // namespace ui

@@ -1,0 +1,25 @@
+#pragma once
+// The subcommands. Adding one: a file beside this one with its setUp function, and one line in commands.cpp.
+
+#include <functional>
+#include <span>
+
+#include <CLI/CLI.hpp>
+
+namespace ui
+{
+
+// What runs once the command line is parsed. Returns the exit code; throws Error or UsageError.
+using Action = std::function<int()>;
+
+struct Command {
+    const char* name;
+    const char* summary;            // one line
+    Action (*setUp)(CLI::App& app); // adds the command's options
+};
+std::span<const Command> commands();
+
+Action setUpInfo(CLI::App& app);
+Action setUpRender(CLI::App& app);
+
+} // namespace ui

@@ -1,0 +1,200 @@
+// info [SCENE]: devices; the built-in scenes; or what a scene holds and what is compiled for it.
+
+#include "engine/scene/procedural.h"
+#include "passes/renderer.h"
+#include "passes/variant.h"
+#include "ui/cli/device_options.h"
+#include "ui/cli/output_file.h"
+#include "ui/cli/progress.h"
+#include "ui/cli/run_report.h"
+#include "ui/cli/scene_source.h"
+#include "ui/cli/settings_options.h"
+#include "ui/commands/commands.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace ui
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+void print(const std::string& line)
+{
+    std::puts(line.c_str());
+}
+
+std::string megabytes(uint64_t bytes)
+{
+    return fmt::format("{:.1f} MiB", double(bytes) / 1048576);
+}
+
+struct InfoCommand {
+    std::string scene, json;
+    bool scenes = false, quiet = false;
+    DeviceOptions device;
+    SettingsOptions settings;
+
+    int run() const;
+};
+
+Json devicesJson()
+{
+    Json list = Json::array();
+    for (const gpu::Adapter& adapter : gpu::enumerateAdapters()) {
+        const gpu::Limits& limits = adapter.limits;
+        list.push_back({{"index", adapter.index},
+                        {"name", adapter.name},
+                        {"kind", adapter.kind},
+                        {"driver", adapter.driver},
+                        {"api_version", adapter.apiVersion},
+                        {"limits",
+                         {{"storage_binding_bytes", limits.storageBindingBytes},
+                          {"table_bytes", limits.tableBytes},
+                          {"tables_are_texel_buffers", limits.tablesAreTexelBuffers},
+                          {"uniform_binding_bytes", limits.uniformBindingBytes},
+                          {"storage_buffers_per_stage", limits.storageBuffersPerStage},
+                          {"workgroup_invocations", limits.workgroupInvocations},
+                          {"workgroup_bytes", limits.workgroupBytes},
+                          {"memory_bytes", limits.memoryBytes},
+                          {"timestamps", limits.timestamps}}}});
+    }
+    return list;
+}
+
+void printDevices(const Json& devices)
+{
+    if (devices.empty()) print("No Vulkan device: the loader found no driver (Debian: mesa-vulkan-drivers).");
+    for (const Json& device : devices) {
+        print(fmt::format("Device {}: {} ({}; {}; Vulkan {})", device["index"].get<uint32_t>(),
+                          device["name"].get<std::string>(), device["kind"].get<std::string>(),
+                          device["driver"].get<std::string>(), device["api_version"].get<std::string>()));
+        for (const auto& [name, value] : device["limits"].items())
+            print(fmt::format("    {:<28}{}", name, value.dump()));
+    }
+}
+
+Json scenesJson()
+{
+    Json list = Json::array();
+    for (const scene::BuiltInScene& builtIn : scene::builtInScenes())
+        list.push_back({{"name", builtIn.name}, {"description", builtIn.description}});
+    return list;
+}
+
+// Name, what it is for, and whether it is in: scene features and settings alike.
+Json variantJson(const std::map<std::string, std::string>& variant)
+{
+    Json list = Json::object();
+    const std::map<std::string, std::string> meanings = passes::variantMeanings();
+    for (const auto& [name, value] : variant) list[name] = {{"value", value}, {"meaning", meanings.at(name)}};
+    return list;
+}
+
+Json sceneJson(const std::string& name, const scene::Scene& world, const passes::RenderStats& stats)
+{
+    Json cameras = Json::array();
+    for (const scene::Camera& camera : world.cameras) cameras.push_back(camera.name);
+    const double triangles = double(std::max<size_t>(world.triangles.size(), 1));
+    return {{"scene", name},
+            {"triangles", world.triangles.size()},
+            {"vertices", world.positions.size()},
+            {"materials", world.materials.size()},
+            {"images", world.images.size()},
+            {"cameras", cameras},
+            {"lights",
+             {{"emissive_triangles", stats.lights.emissiveTriangles},
+              {"points", stats.lights.points},
+              {"spots", stats.lights.spots},
+              {"directionals", stats.lights.directionals},
+              {"environments", stats.lights.environments}}},
+            {"bvh",
+             {{"nodes", stats.bvh.nodes},
+              {"bytes", stats.bvh.bytes},
+              {"bytes_per_triangle", double(stats.bvh.bytes) / triangles},
+              {"sah_cost", stats.bvh.sahCost},
+              {"seconds", stats.bvhSeconds},
+              {"triangle_records", stats.bvh.triangleRecords},
+              {"skipped_triangles", stats.bvh.skippedTriangles}}},
+            {"scene_bytes", stats.sceneBytes},
+            {"bytes_per_pixel", stats.bytesPerPixel},
+            {"memory_bytes", stats.memoryBytes},
+            {"variant", variantJson(stats.variant)},
+            {"warnings", world.warnings}};
+}
+
+void printScene(const Json& scene, const passes::Settings& settings)
+{
+    const Json& bvh = scene["bvh"];
+    print(fmt::format("Scene \"{}\": {} triangles, {} vertices, {} materials, {} images",
+                      scene["scene"].get<std::string>(), scene["triangles"].get<uint64_t>(),
+                      scene["vertices"].get<uint64_t>(), scene["materials"].get<uint64_t>(),
+                      scene["images"].get<uint64_t>()));
+    std::string lights;
+    for (const auto& [kind, count] : scene["lights"].items())
+        if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
+    print("Lights: " + lights);
+    print("Cameras: " + scene["cameras"].dump());
+    print(fmt::format("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s",
+                      bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
+                      bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>()));
+    print(fmt::format("Memory: {} for the scene, {:.0f} bytes per pixel, {} in all at {}x{}",
+                      megabytes(scene["scene_bytes"]), scene["bytes_per_pixel"].get<double>(),
+                      megabytes(scene["memory_bytes"]), settings.width, settings.height));
+    for (const bool in : {true, false}) {
+        print(in ? "Compiled in:" : "Left out, because neither the scene nor the settings need it:");
+        for (const auto& [name, fact] : scene["variant"].items())
+            if ((fact["value"] != "off") == in)
+                print(fmt::format("    {:<34}{}{}", name, fact["meaning"].get<std::string>(),
+                                  fact["value"] == "on" || !in ? "" : ": " + fact["value"].get<std::string>()));
+    }
+}
+
+int InfoCommand::run() const
+{
+    if (!json.empty()) requireWritable(json);
+    Json facts = {{"version", version()}};
+    if (scenes) {
+        facts["scenes"] = scenesJson();
+        for (const scene::BuiltInScene& builtIn : scene::builtInScenes())
+            print(fmt::format("{:<10}{}", builtIn.name, builtIn.description));
+    } else if (scene.empty()) {
+        facts["devices"] = devicesJson();
+        printDevices(facts["devices"]);
+    } else {
+        const passes::Settings chosen = settings.read();
+        Progress progress(quiet);
+        gpu::Device gpu = device.open();
+        const scene::Scene world = openScene(scene, chosen, progress);
+        passes::Renderer renderer(gpu, world, chosen,
+                                  [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
+        progress.clear();
+        facts["device"] = gpu.adapter().name;
+        facts["scene"] = sceneJson(scene, world, renderer.stats());
+        printScene(facts["scene"], chosen);
+    }
+    if (!json.empty()) writeText(json, facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return 0;
+}
+
+} // namespace
+
+Action setUpInfo(CLI::App& app)
+{
+    const auto command = std::make_shared<InfoCommand>();
+    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene; none: the Vulkan devices.");
+    app.add_flag("--scenes", command->scenes, "Lists the built-in scenes.");
+    app.add_option("--json", command->json, "Writes the same facts for programs.")->option_text("FILE.json");
+    app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
+    command->device.addTo(app);
+    command->settings.addTo(app);
+    return [command] { return command->run(); };
+}
+
+} // namespace ui

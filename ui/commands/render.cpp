@@ -1,0 +1,117 @@
+// render SCENE -o FILE: frames of one scene into one picture.
+
+#include "engine/base/files.h"
+#include "passes/camera_choice.h"
+#include "passes/renderer.h"
+#include "ui/cli/device_options.h"
+#include "ui/cli/interrupt.h"
+#include "ui/cli/output_file.h"
+#include "ui/cli/progress.h"
+#include "ui/cli/run_report.h"
+#include "ui/cli/scene_source.h"
+#include "ui/cli/settings_options.h"
+#include "ui/commands/commands.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+namespace ui
+{
+
+namespace
+{
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct RenderCommand {
+    std::string scene, output, stats;
+    bool quiet = false;
+    DeviceOptions device;
+    SettingsOptions settings;
+
+    int run() const;
+    void renderFrames(passes::Renderer& renderer, Progress& progress, RunReport& report) const;
+};
+
+// Until the settings say stop, or Ctrl-C does.
+void RenderCommand::renderFrames(passes::Renderer& renderer, Progress& progress, RunReport& report) const
+{
+    const passes::Settings& wanted = report.settings;
+    const bool byTime = wanted.seconds > 0;
+    const Interrupt interrupt;
+    const auto start = std::chrono::steady_clock::now();
+    double elapsed = 0;
+    const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
+    do {
+        renderer.renderFrame();
+        report.frames = renderer.frameCount();
+        elapsed = secondsSince(start);
+        if (byTime)
+            progress.show("Rendering", elapsed, wanted.seconds);
+        else
+            progress.show("Rendering", double(report.frames), wanted.frames, "frames");
+    } while (!finished() && !interrupt.requested());
+    renderer.wait();
+    report.wallSeconds = secondsSince(start);
+    report.partial = !finished();
+    progress.clear();
+}
+
+int RenderCommand::run() const
+{
+    RunReport report{.scene = scene, .settings = settings.read()};
+    requireWritable(output, {".exr", ".png"});
+    if (!stats.empty()) requireWritable(stats);
+
+    Progress progress(quiet);
+    const auto loadStart = std::chrono::steady_clock::now();
+    gpu::Device gpu = device.open();
+    const scene::Scene world = openScene(scene, report.settings, progress);
+    report.adapter = gpu.adapter();
+    report.loadSeconds = secondsSince(loadStart);
+    passes::Renderer renderer(gpu, world, report.settings,
+                              [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
+
+    renderFrames(renderer, progress, report);
+    const image::Image picture = renderer.readColor();
+    report.stats = renderer.stats();
+    report.meanRgb = meanOf(picture);
+    image::write(output, picture, metadataOf(report));
+    if (!stats.empty()) writeText(stats, toJson(report).dump(2) + "\n");
+
+    for (const auto& [stage, count] : report.stats.nonFinite)
+        if (count > 0)
+            std::fprintf(stderr, "Warning: stage %s found %llu values that are not finite and counted them as 0.\n",
+                         stage.c_str(), static_cast<unsigned long long>(count));
+    if (!report.partial) return 0;
+    std::fprintf(stderr, "Interrupted: %s is partial, marked so, with %llu frames.\n", output.c_str(),
+                 static_cast<unsigned long long>(report.frames));
+    return EXIT_INTERRUPTED;
+}
+
+} // namespace
+
+Action setUpRender(CLI::App& app)
+{
+    const auto command = std::make_shared<RenderCommand>();
+    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
+        ->required();
+    app.add_option("-o,--output", command->output,
+                   "The picture. EXR: float32 linear RGB. PNG: c/(c+1), then sRGB. Both with all settings inside.")
+        ->option_text("FILE.exr|FILE.png")
+        ->required();
+    app.add_option("--stats", command->stats, "Writes what was done, for programs: times, rays, memory, settings.")
+        ->option_text("FILE.json");
+    app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
+    command->device.addTo(app);
+    command->settings.addTo(app);
+    return [command] { return command->run(); };
+}
+
+} // namespace ui

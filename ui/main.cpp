@@ -1,0 +1,58 @@
+// Command line to command; the one place that catches Error. Exit codes: 0 done, 1 the world is wrong, 2 wrong usage,
+// 130 interrupted.
+
+#include "engine/base/error.h"
+#include "ui/cli/help.h"
+#include "ui/cli/run_report.h"
+#include "ui/cli/usage_error.h"
+#include "ui/commands/commands.h"
+
+#include <cstdio>
+#include <new>
+
+namespace
+{
+
+constexpr int EXIT_WORLD = 1, EXIT_USAGE = 2;
+
+int say(int code, const char* sentence)
+{
+    std::fprintf(stderr, "trichrome: %s\n", sentence);
+    return code;
+}
+
+int run(const ui::Action& action)
+{
+    try {
+        return action();
+    } catch (const ui::UsageError& error) {
+        return say(EXIT_USAGE, error.what());
+    } catch (const Error& error) {
+        return say(EXIT_WORLD, error.what());
+    } catch (const std::bad_alloc&) {
+        return say(EXIT_WORLD, "Out of memory.");
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    CLI::App app("Trichrome renders glTF scenes by path tracing, ReSTIR PT and RGB ReSTIR on any Vulkan device.");
+    app.name("trichrome");
+    app.set_version_flag("--version", ui::version());
+    app.require_subcommand(1);
+    app.formatter(std::make_shared<ui::HelpFormatter>()); // inherited by the commands
+
+    ui::Action chosen;
+    for (const ui::Command& command : ui::commands()) {
+        CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
+        subcommand.final_callback([action = command.setUp(subcommand), &chosen] { chosen = action; });
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : EXIT_USAGE; // 0: --help, --version
+    }
+    return run(chosen);
+}
