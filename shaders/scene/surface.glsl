@@ -106,17 +106,24 @@ vec3 loadEmission(uint material, Coordinates at, bool front, vec3 baseColor)
     return HAS_UNLIT && (words.w & MATERIAL_UNLIT) != 0u ? baseColor : emission;
 }
 
-// Does the surface exist where a ray meets it? Called by traversal for triangles flagged so at build time.
+// The probability that the surface exists where a ray meets it.
+float loadCoverage(uint material, uint row, vec2 barycentric, Coordinates at)
+{
+    uint flags = FETCH(SceneData, material + 1u).w;
+    if (!HAS_ALPHA || (flags & (MATERIAL_MASK | MATERIAL_BLEND)) == 0u) return 1.0;
+    float alpha = loadBaseColor(material, row, barycentric, at).a;
+    float cutoff = uintBitsToFloat(FETCH(SceneData, material + 4u).y);
+    return (flags & MATERIAL_MASK) != 0u ? float(alpha >= cutoff) : min(alpha, 1.0);
+}
+
+// Does it exist for this ray? Called by traversal for triangles flagged so at build time.
 bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed)
 {
     uint row = triangle * scene.attributeRows;
     uint material = materialRow(FETCH(Attributes, row).w);
-    uint flags = FETCH(SceneData, material + 1u).w;
-    float alpha = loadBaseColor(material, row, barycentric, loadCoordinates(row, barycentric)).a;
-    float cutoff = uintBitsToFloat(FETCH(SceneData, material + 4u).y);
-    // Blend: independent per ray and triangle, and the same again when the path is replayed.
-    uint bits = pcg4d(uvec4(alphaSeed, triangle, 0u, 0u)).x;
-    return (flags & MATERIAL_MASK) != 0u ? alpha >= cutoff : unitFloat(bits) < alpha;
+    float coverage = loadCoverage(material, row, barycentric, loadCoordinates(row, barycentric));
+    // Independent per ray and triangle, and the same again when the path is replayed.
+    return unitFloat(pcg4d(uvec4(alphaSeed, triangle, 0u, 0u)).x) < coverage;
 }
 
 // ------------------------------------------------------------------------------------------------------------- surfaces
