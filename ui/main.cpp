@@ -45,13 +45,15 @@ int main(int argc, char** argv)
     app.formatter(std::make_shared<ui::HelpFormatter>()); // inherited by the commands
 
     std::string names;
+    bool known = argc < 2 || argv[1][0] == '-';
     ui::Action chosen;
     for (const ui::Command& command : ui::commands()) {
         CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
         names += (names.empty() ? "" : ", ") + std::string(command.name);
+        known = known || std::string(argv[1]) == command.name;
         subcommand.final_callback([action = command.setUp(subcommand), &chosen] { chosen = action; });
     }
-    if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1]))
+    if (!known)
         return say(EXIT_USAGE, fmt::format("There is no command \"{}\"; there are: {}.", argv[1], names).c_str());
     try {
         app.parse(argc, argv);
