@@ -90,7 +90,7 @@ Json parseJson(std::span<const std::byte> bytes)
     } catch (const Json::exception& exception) {
         std::string reason = exception.what(); // "[json.exception.parse_error.101] parse error at line 1, ..."
         reason = reason.substr(std::min(reason.find("] ") + 2, reason.size()));
-        throw Error("The JSON is malformed: {}.", shown(reason));
+        throw Error("The JSON is malformed: {}.", shown(reason, 200));
     }
 }
 

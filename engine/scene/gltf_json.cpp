@@ -8,8 +8,6 @@ namespace scene::gltf
 namespace
 {
 
-constexpr size_t SHOWN_LENGTH = 60;
-
 std::string shown(const Json& value)
 {
     if (value.is_object()) return "an object";
@@ -20,9 +18,9 @@ std::string shown(const Json& value)
 
 } // namespace
 
-std::string shown(const std::string& text)
+std::string shown(const std::string& text, size_t maxLength)
 {
-    size_t length = std::min(text.size(), SHOWN_LENGTH);
+    size_t length = std::min(text.size(), maxLength);
     while (length < text.size() && length > 0 && (text[length] & 0xc0) == 0x80) --length; // whole UTF-8 characters
     std::string result = text.substr(0, length);
     for (char& c : result) {

@@ -15,7 +15,7 @@ namespace scene::gltf
 using Json = nlohmann::json;
 
 // A string of the file as it may be shown: shortened, control characters replaced.
-std::string shown(const std::string& text);
+std::string shown(const std::string& text, size_t maxLength = 60);
 
 // A JSON object and where it stands. A child refers to its parent: live on the stack only.
 class Object

@@ -64,12 +64,16 @@ void placeCameras(Scene& scene, Warnings& warnings)
     warnings.add("The file has no camera: placed one in front that sees the whole scene.");
 }
 
-void placeLights(Scene& scene, const std::vector<gltf::WorldLight>& lights, Warnings& warnings)
+void placeLights(Scene& scene, const std::vector<gltf::WorldLight>& lights)
 {
     for (const auto& [light, position] : lights) {
         scene.lights.push_back(light);
         scene.lights.back().position = glm::vec3(position - scene.origin);
     }
+}
+
+void addSkyWhenDark(Scene& scene, Warnings& warnings)
+{
     const bool shines = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
         return material.unlit || material.emission != glm::vec3(0);
     });
@@ -97,7 +101,8 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     scene.images = gltf::readImages(document, scene.materials, report("Decoding images"));
     scene.cameras = gltf::readCameras(document, tree, warnings);
     placeCameras(scene, warnings);
-    placeLights(scene, gltf::readLights(document, tree, warnings), warnings);
+    placeLights(scene, gltf::readLights(document, tree, warnings));
+    if (options.sky) addSkyWhenDark(scene, warnings);
     if (scene.triangles.empty()) warnings.add("The scene has no triangle.");
     scene.warnings = warnings.sentences();
     return scene;

@@ -12,7 +12,8 @@ namespace scene
 
 struct LoadOptions {
     std::function<void(const std::string& what, double fraction)>
-        progress; // may be empty; called on the caller's thread
+        progress;    // may be empty; called on the caller's thread
+    bool sky = true; // a file without light gets a uniform sky; false: the caller has an environment for it
 };
 
 // The file's default scene, in its default pose. Throws Error: one sentence naming the file, the object and the value.

@@ -1,5 +1,6 @@
 #include "engine/scene/texture_image.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -17,6 +18,9 @@ Image decodeTexture(std::span<const std::byte> bytes, const std::string& name)
         throw Error("{} ({} bytes) is neither PNG nor JPEG.", what, bytes.size());
     };
     image::Raster<uint8_t> raster = decode();
+    if (std::max(raster.width, raster.height) > MAX_TEXTURE_SIDE)
+        throw Error("Image \"{}\" is {} x {} pixels, but a texture may have {} along a side.", name, raster.width,
+                    raster.height, MAX_TEXTURE_SIDE);
     return {.name = name, .width = raster.width, .height = raster.height, .rgba = std::move(raster.rgba)};
 }
 

@@ -96,8 +96,10 @@ LightSample sampleLight(uvec4 random, vec3 from)
         l.normal = (front ? g.areaNormal : -g.areaNormal) / twiceArea;
         if (squared > 0.0 && c != 0.0) {
             l.pdf *= squared / (0.5 * twiceArea * abs(c));
-            Coordinates at = loadCoordinates(item * scene.attributeRows, barycentric);
-            l.radiance = loadEmission(materialRow(g.material), at, front, vec3(0.0));
+            uint row = item * scene.attributeRows;
+            uint material = materialRow(g.material);
+            Coordinates at = loadCoordinates(row, barycentric);
+            l.radiance = loadEmission(material, at, front, vec3(0.0)) * loadCoverage(material, row, barycentric, at);
         }
     }
     if (HAS_PUNCTUAL && kind == LIGHT_PUNCTUAL) {

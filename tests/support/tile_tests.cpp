@@ -14,20 +14,18 @@ namespace support
 namespace
 {
 
-constexpr double FLOAT_ROUNDING = 1e-6;
-
-uint32_t tileCount(uint32_t pixels)
+uint32_t tileCount(uint32_t pixels, uint32_t tileSize)
 {
-    return (pixels + TILE_SIZE - 1) / TILE_SIZE;
+    return (pixels - 1) / tileSize + 1;
 }
 
 // Calls visit(tile index, pixel index) for every pixel of a picture.
 template <class Visit>
-void forEachPixel(uint32_t width, uint32_t height, Visit&& visit)
+void forEachPixel(uint32_t width, uint32_t height, uint32_t tileSize, Visit&& visit)
 {
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
-            visit(size_t{y / TILE_SIZE} * tileCount(width) + x / TILE_SIZE, size_t{y} * width + x);
+            visit(size_t{y / tileSize} * tileCount(width, tileSize) + x / tileSize, size_t{y} * width + x);
 }
 
 std::string describe(const TileEstimates& picture, size_t tile, size_t channel, double a, double b)
@@ -46,14 +44,14 @@ void checkSameShape(const TileEstimates& a, const TileEstimates& b)
 
 } // namespace
 
-TileEstimates tilesOf(const PixelEstimates& picture)
+TileEstimates tilesOf(const PixelEstimates& picture, uint32_t tileSize)
 {
-    TileEstimates result{tileCount(picture.width), tileCount(picture.height), {}};
+    TileEstimates result{tileCount(picture.width, tileSize), tileCount(picture.height, tileSize), {}};
     const size_t count = size_t{result.columns} * result.rows;
     result.tiles.resize(count);
     std::vector<uint32_t> pixelCount(count, 0);
     std::vector<std::array<double, 3>> spread(count, {0, 0, 0}); // of Welch and Satterthwaite
-    forEachPixel(picture.width, picture.height, [&](size_t tile, size_t pixel) {
+    forEachPixel(picture.width, picture.height, tileSize, [&](size_t tile, size_t pixel) {
         ++pixelCount[tile];
         for (size_t c = 0; c < 3; ++c) {
             const Estimate& e = picture.pixels[pixel][c];
@@ -81,13 +79,13 @@ void TileRuns::add(const image::Image& run)
     if (tiles_.empty()) {
         width_ = run.width;
         height_ = run.height;
-        tiles_.resize(size_t{tileCount(width_)} * tileCount(height_));
+        tiles_.resize(size_t{tileCount(width_, tileSize_)} * tileCount(height_, tileSize_));
     }
     CHECK_EQ(run.width, width_);
     CHECK_EQ(run.height, height_);
     std::vector<glm::dvec3> sum(tiles_.size(), glm::dvec3(0));
     std::vector<uint32_t> pixelCount(tiles_.size(), 0);
-    forEachPixel(width_, height_, [&](size_t tile, size_t pixel) {
+    forEachPixel(width_, height_, tileSize_, [&](size_t tile, size_t pixel) {
         sum[tile] += glm::dvec3(run.pixels[pixel]);
         ++pixelCount[tile];
     });
@@ -97,13 +95,13 @@ void TileRuns::add(const image::Image& run)
 
 TileEstimates TileRuns::estimates() const
 {
-    TileEstimates result{tileCount(width_), tileCount(height_), {}};
+    TileEstimates result{tileCount(width_, tileSize_), tileCount(height_, tileSize_), {}};
     for (const auto& tile : tiles_)
         result.tiles.push_back({estimateOf(tile[0]), estimateOf(tile[1]), estimateOf(tile[2])});
     return result;
 }
 
-TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel)
+TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel, double relativeRounding)
 {
     checkSameShape(a, b);
     const double level = sidakLevel(familyLevel, 3 * a.tiles.size());
@@ -112,7 +110,7 @@ TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double fa
     for (size_t tile = 0; tile < a.tiles.size(); ++tile) {
         for (size_t c = 0; c < 3; ++c) {
             const Estimate &left = a.tiles[tile][c], &right = b.tiles[tile][c];
-            const Difference d = compare(left, right, FLOAT_ROUNDING);
+            const Difference d = compare(left, right, relativeRounding);
             // Written so that a NaN on either side fails.
             if (!(d.p >= level)) verdict.passes = false;
             if (d.p >= worst) continue;
@@ -137,7 +135,7 @@ TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, d
     for (size_t tile = 0; tile < a.tiles.size(); ++tile) {
         for (size_t c = 0; c < 3; ++c) {
             const Estimate &left = a.tiles[tile][c], &right = b.tiles[tile][c];
-            const Difference d = compare(left, right, FLOAT_ROUNDING);
+            const Difference d = compare(left, right, 1e-6);
             const double scale = std::max(std::abs(right.mean), std::abs(pictureMean[c]));
             if (scale == 0 && d.difference == 0 && d.standardError == 0) continue; // both are exactly black
             if (!showsEquivalence(d, margin * scale, level)) verdict.passes = false;
@@ -149,6 +147,24 @@ TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, d
         }
     }
     return verdict;
+}
+
+PictureEstimates pictureOf(const PixelEstimates& picture)
+{
+    return {tilesOf(picture), tilesOf(picture, UINT32_MAX)};
+}
+
+void PictureRuns::add(const image::Image& run)
+{
+    tiles_.add(run);
+    whole_.add(run);
+}
+
+TileVerdict picturesAgree(const PictureEstimates& a, const PictureEstimates& b, double margin, double relativeRounding)
+{
+    const TileVerdict tiles = tilesAgree(a.tiles, b.tiles, 1e-3, relativeRounding);
+    const TileVerdict whole = tilesAreEquivalent(a.whole, b.whole, margin);
+    return {tiles.passes && whole.passes, "tiles: " + tiles.summary + "\nwhole picture: " + whole.summary};
 }
 
 } // namespace support

@@ -30,17 +30,19 @@ struct PixelEstimates {
     uint32_t height = 0;
     std::vector<std::array<Estimate, 3>> pixels; // row 0 at the top
 };
-TileEstimates tilesOf(const PixelEstimates& picture);
+TileEstimates tilesOf(const PixelEstimates& picture, uint32_t tileSize = TILE_SIZE);
 
 // From whole pictures of independent runs: makes no assumption on how pixels within a run depend on each other.
 class TileRuns
 {
   public:
+    explicit TileRuns(uint32_t tileSize = TILE_SIZE) : tileSize_(tileSize) {}
     void add(const image::Image& run);
     TileEstimates estimates() const; // at least two runs
     const std::vector<std::array<Moments, 3>>& moments() const { return tiles_; }
 
   private:
+    uint32_t tileSize_;
     uint32_t width_ = 0, height_ = 0;
     std::vector<std::array<Moments, 3>> tiles_;
 };
@@ -52,13 +54,36 @@ struct TileVerdict {
 };
 
 // Rejects (passes = false) when some tile differs: Welch's t of each tile and channel, at the level that makes a false
-// rejection anywhere have the probability `familyLevel` (Sidak). Float32 rounding of 1e-6 is allowed for.
-TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel = 1e-3);
+// rejection anywhere have the probability `familyLevel` (Sidak). Rounding: see compare(); 1e-6 is that of float32.
+TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel = 1e-3,
+                       double relativeRounding = 1e-6);
 
 // Passes when every tile and channel is shown to differ by less than `margin` times the larger of its own mean and the
 // mean of the picture in that channel, by two one-sided tests at `level` each (an intersection-union test: the
 // probability of passing with a difference beyond the margin anywhere is at most `level`). A noisy comparison fails.
 TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, double margin = 0.01,
                                double level = 0.05);
+
+// A picture by tiles, which show where it is wrong, and as a whole, which shows small errors of all of it.
+struct PictureEstimates {
+    TileEstimates tiles;
+    TileEstimates whole; // one tile
+};
+PictureEstimates pictureOf(const PixelEstimates& picture);
+
+class PictureRuns
+{
+  public:
+    void add(const image::Image& run);
+    PictureEstimates estimates() const { return {tiles_.estimates(), whole_.estimates()}; }
+
+  private:
+    TileRuns tiles_, whole_{UINT32_MAX};
+};
+
+// tilesAgree(), and the means of the whole pictures are equivalent within `margin`, so that an error of it would show.
+// Rounding: the device's scene has vertex colors in half precision.
+TileVerdict picturesAgree(const PictureEstimates& a, const PictureEstimates& b, double margin = 0.01,
+                          double relativeRounding = 5e-5);
 
 } // namespace support

@@ -1,0 +1,104 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/files.h"
+#include "engine/scene/gltf_uri.h"
+#include "tests/support/tiny_gltf.h"
+
+namespace scene
+{
+
+TEST(GltfDocument, RequiredExtensionsMustBeKnown)
+{
+    TinyGltf file;
+    file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_materials_ior", "KHR_draco_mesh_compression"};
+    EXPECT_EQ(file.error(), "The file requires the extension \"KHR_draco_mesh_compression\", which is not supported.");
+    file.json["extensionsRequired"] = {"KHR_materials_ior"};
+    EXPECT_EQ(file.error(), "");
+}
+
+TEST(GltfDocument, IgnoredExtensionsAreNamed)
+{
+    TinyGltf file;
+    file.json["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_clearcoat", "EXT_unheard_of"};
+    file.material()["extensions"] = {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}};
+    EXPECT_TRUE(file.warns("Ignored the extension \"KHR_materials_clearcoat\" on 1 material."));
+    EXPECT_TRUE(file.warns("Ignored the extension \"EXT_unheard_of\"."));
+    for (const std::string& warning : file.load().warnings)
+        EXPECT_EQ(warning.find("KHR_materials_ior"), std::string::npos) << warning;
+}
+
+TEST(GltfDocument, AnimationsAreIgnoredAndSaid)
+{
+    TinyGltf file;
+    file.json["animations"] = {{{"samplers",
+                                 {{{"input", file.accessor<float>({0, 1}, "SCALAR")},
+                                   {"output", file.accessor<float>({0, 0, 0, 9, 9, 9}, "VEC3")}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    EXPECT_TRUE(file.warns("Ignored 1 animation: the scene is shown in its default pose."));
+    EXPECT_NEAR(file.load().origin.x, 0.5, 1e-6);
+}
+
+TEST(GltfDocument, ErrorsNameTheObjectAndTheValue)
+{
+    TinyGltf file;
+    file.json["nodes"][0]["mesh"] = 3;
+    EXPECT_EQ(file.error(), "nodes[0].mesh is 3, but the file has 1 meshes.");
+    TinyGltf other;
+    other.primitive()["indices"] = other.accessor<uint16_t>({0, 1, 3}, "SCALAR");
+    EXPECT_EQ(other.error(), "meshes[0].primitives[0] has the index 3 at 2, but 3 vertices.");
+}
+
+class GltfUri : public testing::Test
+{
+  protected:
+    void SetUp() override
+    {
+        std::filesystem::create_directories(root / "inside" / "a b");
+        std::ofstream(root / "inside" / "a b" / "ä%.bin") << "content";
+        std::ofstream(root / "secret") << "secret";
+        std::filesystem::create_symlink(root / "secret", root / "inside" / "link");
+    }
+    void TearDown() override { std::filesystem::remove_all(root); }
+    std::string read(const std::string& uri) const
+    {
+        const auto bytes = gltf::readUri(uri, root / "inside");
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+
+    const std::filesystem::path root =
+        std::filesystem::temp_directory_path() / ("trichrome_uri_test_" + std::to_string(::getpid()));
+};
+
+TEST_F(GltfUri, ReadsPercentEncodedNamesAndData)
+{
+    EXPECT_EQ(read("a%20b/%C3%A4%25.bin"), "content");
+    EXPECT_EQ(read("a b/\xC3\xA4%25.bin"), "content");
+    EXPECT_EQ(read("data:application/octet-stream;base64,aGVsbG8="), "hello");
+}
+
+TEST_F(GltfUri, StaysInsideTheFolder)
+{
+    for (const std::string uri : {"../secret", "a b/../../secret", "%2e%2e/secret", "link", "/etc/passwd",
+                                  "file:///etc/passwd", "http://localhost/", "%00", "", "missing", "a b", "%zz"})
+        EXPECT_THROW(read(uri), Error) << uri;
+}
+
+TEST(GltfBase64, EveryLengthAndEveryFault)
+{
+    const auto text = [](std::string_view encoded) {
+        const auto bytes = gltf::decodeBase64(encoded);
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    EXPECT_EQ(text(""), "");
+    EXPECT_EQ(text("Zg=="), "f");
+    EXPECT_EQ(text("Zm8="), "fo");
+    EXPECT_EQ(text("Zm9v"), "foo");
+    EXPECT_EQ(text("Zm8"), "fo"); // unpadded
+    for (const char* wrong : {"Z", "Zm9vYg=", "Zm9v!g==", "Z===", "Zm 9"}) EXPECT_THROW(text(wrong), Error) << wrong;
+}
+
+} // namespace scene

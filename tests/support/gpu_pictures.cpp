@@ -1,0 +1,45 @@
+#include "tests/support/gpu_pictures.h"
+
+#include <gtest/gtest.h>
+
+namespace support
+{
+
+namespace
+{
+
+void expectFinite(passes::Renderer& renderer)
+{
+    for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << "not finite in " << stage;
+}
+
+} // namespace
+
+PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
+                              uint32_t frames, passes::Renderer::Features features)
+{
+    passes::Renderer renderer(device, scene, settings, {}, features);
+    PictureRuns runs;
+    for (uint32_t i = 0; i < frames; ++i) {
+        renderer.renderFrame();
+        runs.add(renderer.readFrame());
+    }
+    expectFinite(renderer);
+    return runs.estimates();
+}
+
+PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
+                            uint32_t runs)
+{
+    PictureRuns result;
+    passes::Settings own = settings;
+    for (uint32_t i = 0; i < runs; ++i, ++own.seed) {
+        passes::Renderer renderer(device, scene, own);
+        for (uint32_t frame = 0; frame < settings.frames; ++frame) renderer.renderFrame();
+        result.add(renderer.readColor());
+        expectFinite(renderer);
+    }
+    return result.estimates();
+}
+
+} // namespace support
