@@ -105,9 +105,6 @@ void Renderer::createBuffers()
 
     frame_.width = settings_.width;
     frame_.height = settings_.height;
-    const uint64_t key = mix(settings_.seed);
-    frame_.key0 = uint32_t(key);
-    frame_.key1 = uint32_t(key >> 32);
     if (resamples) {
         const Estimator& estimator = estimatorOf(settings_.method);
         for (size_t c = 0; c < count; ++c) {
@@ -120,6 +117,9 @@ void Renderer::createBuffers()
 
 void Renderer::tune()
 {
+    const uint64_t key = mix(settings_.seed);
+    frame_.key0 = uint32_t(key);
+    frame_.key1 = uint32_t(key >> 32);
     frame_.maxConfidence = settings_.maxConfidence;
     frame_.neighborCount = settings_.spatial;
     frame_.neighborRadius = settings_.spatialRadius;
@@ -177,17 +177,17 @@ const Stage& Renderer::temporal()
 
 void Renderer::apply(const Settings& settings)
 {
-    Settings tuned = settings_;
-    tuned.maxConfidence = settings.maxConfidence;
-    tuned.spatialRadius = settings.spatialRadius;
-    tuned.frames = settings.frames;
-    tuned.seconds = settings.seconds;
-    tuned.average = settings.average;
-    const bool same = tuned == settings;
+    Settings rest = settings;
+    const auto keep = [&](auto... field) { ((rest.*field = settings_.*field), ...); };
+    keep(&Settings::maxConfidence, &Settings::spatialRadius, &Settings::temporal, &Settings::frames, &Settings::seconds,
+         &Settings::average, &Settings::seed);
+    const bool compiled = rest == settings_; // all that differs is not compiled in
+    const bool reseeded = settings.seed != settings_.seed;
     wait();
     settings_ = settings;
-    if (same) {
+    if (compiled) {
         tune();
+        if (reseeded) reset();
         return;
     }
     createBuffers();

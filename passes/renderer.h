@@ -48,8 +48,8 @@ class Renderer
     void renderFrame();                // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
     void reset();                      // forgets all frames
-    // From the next frame on. M_c, radius, temporal and number of neighbors take effect at once and keep history and film;
-    // anything else compiles anew and starts over. The scene and its environment stay.
+    // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and film,
+    // the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
     const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
