@@ -34,8 +34,8 @@ void checkUnbiased(const Estimator& estimator)
 {
     const size_t count = estimator.target.size();
     if (count == 0 || count > shared::MAX_RESERVOIRS || estimator.resolve.size() != count)
-        throw Error("Estimator \"{}\" has {} targets and {} resolve weights; it takes as many of both, 1 to {}.", estimator.name,
-                    count, estimator.resolve.size(), shared::MAX_RESERVOIRS);
+        throw Error("Estimator \"{}\" has {} targets and {} resolve weights; it takes as many of both, 1 to {}.",
+                    estimator.name, count, estimator.resolve.size(), shared::MAX_RESERVOIRS);
     for (int channel = 0; channel < 3; ++channel) {
         const char name = "RGB"[channel];
         float sum = 0;
@@ -43,15 +43,18 @@ void checkUnbiased(const Estimator& estimator)
             const float target = estimator.target[c][channel];
             const float resolve = estimator.resolve[c][channel];
             if (!(target >= 0 && resolve >= 0 && std::isfinite(target) && std::isfinite(resolve)))
-                throw Error("Estimator \"{}\" has a weight below 0 or not finite (target {}, resolve {}) in reservoir {}, channel {}.",
+                throw Error("Estimator \"{}\" has a weight below 0 or not finite (target {}, resolve {}) in reservoir "
+                            "{}, channel {}.",
                             estimator.name, target, resolve, c, name);
             if (resolve > 0 && target == 0)
-                throw Error("Estimator \"{}\" is biased: reservoir {} resolves channel {}, which its target leaves out.", estimator.name,
-                            c, name);
+                throw Error(
+                    "Estimator \"{}\" is biased: reservoir {} resolves channel {}, which its target leaves out.",
+                    estimator.name, c, name);
             sum += resolve;
         }
         if (std::abs(sum - 1) > 1e-6f)
-            throw Error("Estimator \"{}\" is biased: the resolve weights of channel {} sum to {}, not 1.", estimator.name, name, sum);
+            throw Error("Estimator \"{}\" is biased: the resolve weights of channel {} sum to {}, not 1.",
+                        estimator.name, name, sum);
     }
 }
 

@@ -14,8 +14,8 @@ namespace passes
 // C reservoirs and two C x 3 tables of non-negative weights (the paper's Algorithm 3, generalised):
 //     target:  reservoir c resamples by p_hat_c(f) = <target[c], f>
 //     resolve: color = sum over c of resolve[c] * f(Y_c) W_c, component by component
-// Unbiased if and only if in every channel the resolve weights sum to 1, and a channel that a reservoir resolves is in its
-// target (else its samples miss light).
+// Unbiased if and only if in every channel the resolve weights sum to 1, and a channel that a reservoir resolves is in
+// its target (else its samples miss light).
 struct Estimator {
     std::string name; // as --method
     std::vector<glm::vec3> target;

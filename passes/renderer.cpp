@@ -59,7 +59,8 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
     createBuffers(); // first: a picture too large for the device is said so before a long build
 
     const auto start = std::chrono::steady_clock::now();
-    const scene::SceneTables tables = scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress, featureSet);
+    const scene::SceneTables tables =
+        scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress, featureSet);
     scene_ = std::make_unique<scene::GpuScene>(device, tables);
     stats_.bvhSeconds = tables.bvh.stats.buildSeconds;
     stats_.tablesSeconds = secondsSince(start) - stats_.bvhSeconds;
@@ -82,7 +83,8 @@ void Renderer::createBuffers()
     const auto perPixel = [&](const char* label, uint64_t bytes, const char* setting = "--size") {
         stats_.bytesPerPixel += double(bytes);
         // Whole rows of 16 bytes; one, too, where this method does not use what its stages declare.
-        return device_.createBuffer({.label = label, .size = std::max<uint64_t>((pixels * bytes + 15) / 16, 1) * 16, .setting = setting});
+        return device_.createBuffer(
+            {.label = label, .size = std::max<uint64_t>((pixels * bytes + 15) / 16, 1) * 16, .setting = setting});
     };
     frameUniform_ =
         device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
@@ -133,7 +135,9 @@ void Renderer::createStages()
     const auto stage = [&](const char* name) { return makeStage(name, variant_); };
     primary_ = stage("primary");
     accumulate_ = stage("accumulate");
-    for (std::unique_ptr<Stage>* other : {&pathTrace_, &canonical_, &temporalResting_, &temporalMoving_, &spatialTrace_, &spatialGather_}) other->reset();
+    for (std::unique_ptr<Stage>* other :
+         {&pathTrace_, &canonical_, &temporalResting_, &temporalMoving_, &spatialTrace_, &spatialGather_})
+        other->reset();
     if (settings_.method == Method::Pt) {
         pathTrace_ = stage("path_trace");
     } else {
@@ -150,10 +154,10 @@ std::unique_ptr<Stage> Renderer::makeStage(const char* name, const Variant& vari
                                .scene = *scene_,
                                .variant = variant,
                                .frame = {{"Frame", &frameUniform_}, {"Counters", &counters_}}};
-    const NamedBuffers all = {{"Surfaces", &surfaces_},     {"Color", &color_},
-                              {"Film", &film_},             {"Reservoirs", &reservoirs_},
-                              {"History", &history_},       {"ReservoirPaths", &reservoirPaths_},
-                              {"Neighbors", &neighbors_},   {"HistoryPaths", &historyPaths_},
+    const NamedBuffers all = {{"Surfaces", &surfaces_},   {"Color", &color_},
+                              {"Film", &film_},           {"Reservoirs", &reservoirs_},
+                              {"History", &history_},     {"ReservoirPaths", &reservoirPaths_},
+                              {"Neighbors", &neighbors_}, {"HistoryPaths", &historyPaths_},
                               {"Shifted", &shifted_}};
     auto stage = std::make_unique<Stage>(context, name, all);
     stats_.compileSeconds += secondsSince(start);
@@ -260,7 +264,10 @@ void Renderer::collectTimings()
     }
 }
 
-image::Image Renderer::readColor() { return settings_.average ? readMean() : readFrame(); }
+image::Image Renderer::readColor()
+{
+    return settings_.average ? readMean() : readFrame();
+}
 
 image::Image Renderer::readFrame()
 {
@@ -289,7 +296,8 @@ RenderStats Renderer::stats()
     const std::vector<uint32_t> words = device_.queue().readAs<uint32_t>(counters_);
     const auto counter = [&](size_t i) { return uint64_t{words[2 * i]} | uint64_t{words[2 * i + 1]} << 32; };
     for (size_t i = 0; i < std::size(RAY_NAMES); ++i) stats.rays[RAY_NAMES[i]] = counter(i);
-    for (size_t i = 0; i < std::size(SHIFT_NAMES); ++i) stats.shifts[SHIFT_NAMES[i]] = counter(shared::COUNTER_SHIFT + i);
+    for (size_t i = 0; i < std::size(SHIFT_NAMES); ++i)
+        stats.shifts[SHIFT_NAMES[i]] = counter(shared::COUNTER_SHIFT + i);
     for (size_t i = 0; i < std::size(STAGE_NAMES); ++i)
         stats.nonFinite[STAGE_NAMES[i]] = counter(shared::COUNTER_NONFINITE + i);
     stats.memoryBytes = device_.allocatedBytes();

@@ -22,40 +22,42 @@ namespace passes
 // Counters and times so far.
 struct RenderStats {
     std::map<std::string, double> stageMilliseconds; // device time per frame, by stage
-    std::map<std::string, uint64_t> rays;            // since the last reset: primary, bounce, shadow, replay, reconnection
-    std::map<std::string, uint64_t> shifts;          // by outcome, since the last reset
-    std::map<std::string, uint64_t> nonFinite;       // values found not finite (and counted as 0), by stage
-    double tablesSeconds = 0;                        // scene -> tables, without the BVH
+    std::map<std::string, uint64_t> rays;      // since the last reset: primary, bounce, shadow, replay, reconnection
+    std::map<std::string, uint64_t> shifts;    // by outcome, since the last reset
+    std::map<std::string, uint64_t> nonFinite; // values found not finite (and counted as 0), by stage
+    double tablesSeconds = 0;                  // scene -> tables, without the BVH
     double bvhSeconds = 0;
     double compileSeconds = 0;
     scene::BvhStats bvh;
     scene::LightCounts lights;
     uint64_t memoryBytes = 0; // of all buffers of the device
     uint64_t sceneBytes = 0;
-    double bytesPerPixel = 0;    // of all buffers that grow with the picture
-    double reservoirBytes = 0;   // of those: per reservoir and pixel, both sets
+    double bytesPerPixel = 0;                   // of all buffers that grow with the picture
+    double reservoirBytes = 0;                  // of those: per reservoir and pixel, both sets
     std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
 };
 
 class Renderer
 {
   public:
-    // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same picture,
-    // slower: for tests and benchmarks.
+    // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same
+    // picture, slower: for tests and benchmarks.
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-             const std::function<void(double)>& bvhProgress = {}, scene::FeatureSet featureSet = scene::FeatureSet::Needed);
+             const std::function<void(double)>& bvhProgress = {},
+             scene::FeatureSet featureSet = scene::FeatureSet::Needed);
 
-    void renderFrame();                // encodes and submits one frame; keeps at most two in flight
+    void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
-    void reset();                      // forgets all frames
-    // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and film,
-    // the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
+    void reset();                                       // forgets all frames
+    // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
+    // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
     const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
-    void wait();                       // until all submitted frames are done
+    void wait();                                 // until all submitted frames are done
 
-    image::Image readColor(); // waits; linear RGB in scene units: the mean of all frames (settings.average), or the last one
+    image::Image
+    readColor(); // waits; linear RGB in scene units: the mean of all frames (settings.average), or the last one
     image::Image readFrame(); // waits; the last frame alone
     image::Image readMean();  // waits; the mean of all frames
     RenderStats stats();      // waits
@@ -79,14 +81,15 @@ class Renderer
     RenderStats stats_;
     shared::FrameUniform frame_ = {};
     uint64_t frameCount_ = 0, timedFrames_ = 0;
-    uint64_t historyFrames_ = 0; // frames of reservoirs that the next frame may reuse
+    uint64_t historyFrames_ = 0;                 // frames of reservoirs that the next frame may reuse
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
     std::unique_ptr<scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_;
-    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_, spatialGather_, accumulate_;
+    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,
+        spatialGather_, accumulate_;
 };
 
 } // namespace passes

@@ -32,13 +32,16 @@ Stage::Stage(const StageContext& context, const std::string& name, const NamedBu
           {.label = "frame", .pipeline = &pipeline_, .set = SET_FRAME, .buffers = context.frame})),
       usesScene_(uses(pipeline_, SET_SCENE)),
       sceneGroup_(usesScene_ ? context.scene.bind(context.device, pipeline_) : gpu::BindGroup()),
-      ownGroup_(context.device.createBindGroup({.label = name, .pipeline = &pipeline_, .set = SET_PASS, .buffers = namedBy(pipeline_, buffers)}))
+      ownGroup_(context.device.createBindGroup(
+          {.label = name, .pipeline = &pipeline_, .set = SET_PASS, .buffers = namedBy(pipeline_, buffers)}))
 {
 }
 
 void Stage::encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const
 {
-    encoder.dispatch({.pipeline = &pipeline_, .groups = {&frameGroup_, usesScene_ ? &sceneGroup_ : nullptr, &ownGroup_}, .threads = threads});
+    encoder.dispatch({.pipeline = &pipeline_,
+                      .groups = {&frameGroup_, usesScene_ ? &sceneGroup_ : nullptr, &ownGroup_},
+                      .threads = threads});
 }
 
 } // namespace passes

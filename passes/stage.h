@@ -1,6 +1,6 @@
 #pragma once
-// One stage of a frame: a shader, its pipeline, and what it is bound to. The shader is the declaration; a stage only says
-// which buffer goes under which name.
+// One stage of a frame: a shader, its pipeline, and what it is bound to. The shader is the declaration; a stage only
+// says which buffer goes under which name.
 
 #include <string>
 #include <utility>

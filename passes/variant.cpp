@@ -13,13 +13,16 @@ namespace
 template <class T>
 std::string text(T value)
 {
-    if constexpr (std::is_same_v<T, bool>) return value ? "on" : "off";
-    else return std::to_string(value);
+    if constexpr (std::is_same_v<T, bool>)
+        return value ? "on" : "off";
+    else
+        return std::to_string(value);
 }
 
 } // namespace
 
-static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY && uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
+static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
+              uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
               uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
 
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic)

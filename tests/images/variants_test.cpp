@@ -17,7 +17,7 @@ namespace
 class Variants : public GpuTest
 {
   protected:
-    image::Image render(const TestScene& test, passes::Renderer::Features features)
+    image::Image render(const TestScene& test, scene::FeatureSet features)
     {
         passes::Renderer renderer(device(), test.make(), test.settings(), {}, features);
         for (int i = 0; i < 2; ++i) renderer.renderFrame();
@@ -34,8 +34,8 @@ TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
     for (const TestScene& test : testScenes()) {
         if (!chosen.contains(test.name)) continue;
         ++rendered;
-        const image::Image needed = render(test, passes::Renderer::Features::Needed);
-        const image::Image everything = render(test, passes::Renderer::Features::Everything);
+        const image::Image needed = render(test, scene::FeatureSet::Needed);
+        const image::Image everything = render(test, scene::FeatureSet::Everything);
         for (size_t i = 0; i < needed.pixels.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(needed.pixels[i][c], everything.pixels[i][c], 4e-6f * needed.pixels[i][c])

@@ -16,7 +16,7 @@ void expectFinite(passes::Renderer& renderer)
 } // namespace
 
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                              uint32_t frames, passes::Renderer::Features features)
+                              uint32_t frames, scene::FeatureSet features)
 {
     passes::Renderer renderer(device, scene, settings, {}, features);
     PictureRuns runs;

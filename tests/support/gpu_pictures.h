@@ -13,7 +13,7 @@ namespace support
 // A value that is not finite fails the test.
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                               uint32_t frames,
-                              passes::Renderer::Features features = passes::Renderer::Features::Needed);
+                              scene::FeatureSet features = scene::FeatureSet::Needed);
 
 // `runs` renderers with seeds of their own, each read after settings.frames frames (their mean, or with
 // !settings.average the last): for methods whose frames depend on each other.
