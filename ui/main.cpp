@@ -44,11 +44,17 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     app.formatter(std::make_shared<ui::HelpFormatter>()); // inherited by the commands
 
+    std::string names;
+    bool known = argc < 2 || argv[1][0] == '-';
     ui::Action chosen;
     for (const ui::Command& command : ui::commands()) {
         CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
+        names += (names.empty() ? "" : ", ") + std::string(command.name);
+        known = known || std::string(argv[1]) == command.name;
         subcommand.final_callback([action = command.setUp(subcommand), &chosen] { chosen = action; });
     }
+    if (!known)
+        return say(EXIT_USAGE, fmt::format("There is no command \"{}\"; there are: {}.", argv[1], names).c_str());
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -24,7 +24,8 @@
         const auto& checkLeft = (a);                                                                                   \
         const auto& checkRight = (b);                                                                                  \
         if (!(checkLeft op checkRight))                                                                                \
-            checkFailed(__FILE__, __LINE__, fmt::format("{} " #op " {} ({} against {})", #a, #b, checkLeft, checkRight)); \
+            checkFailed(__FILE__, __LINE__,                                                                            \
+                        fmt::format("{} " #op " {} ({} against {})", #a, #b, checkLeft, checkRight));                  \
     } while (false)
 
 #define CHECK_EQ(a, b) CHECK_OP_(a, ==, b)

@@ -8,9 +8,11 @@
 #include <memory>
 #include <unistd.h>
 
-namespace files {
+namespace files
+{
 
-namespace {
+namespace
+{
 
 struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }

@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-namespace files {
+namespace files
+{
 
 // All bytes of a regular file. Throws Error when it cannot be read, is no regular file, or is larger than `maxBytes`.
 std::vector<std::byte> read(const std::filesystem::path& path, uint64_t maxBytes = uint64_t{4} << 30);

@@ -1,6 +1,6 @@
 #pragma once
-// Constant-time sampling of a discrete distribution. Vose, "A Linear Algorithm for Generating Random Numbers with a Given
-// Distribution", 1991.
+// Constant-time sampling of a discrete distribution. Vose, "A Linear Algorithm for Generating Random Numbers with a
+// Given Distribution", 1991.
 
 #include <cstdint>
 #include <span>

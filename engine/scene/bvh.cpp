@@ -198,6 +198,20 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive>
     return tree;
 }
 
+uint64_t bytesOf(uint64_t rows, uint32_t stride)
+{
+    return rows * stride * sizeof(glm::uvec4);
+}
+
+void requireFits(const char* what, uint64_t rows, uint32_t stride, uint64_t limit)
+{
+    if (bytesOf(rows, stride) > limit)
+        throw Error(
+            "The scene's {} {} need a table of {} bytes, more than the {} that this device allows: simplify the "
+            "scene, or choose another device with --device.",
+            rows, what, bytesOf(rows, stride), limit);
+}
+
 } // namespace
 
 Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
@@ -209,20 +223,18 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     Bvh bvh;
     const std::vector<RTCBuildPrimitive> primitives = usablePrimitives(input);
     bvh.stats.skippedTriangles = input.triangles.size() - primitives.size();
-    const auto fits = [&](const WideTree& tree) {
-        return std::max(tree.nodes.size() * shared::BVH_NODE_STRIDE,
-                        tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE) *
-                   sizeof(glm::uvec4) <=
-               maxTableBytes;
-    };
+    // A triangle has at least one record: do not begin what cannot end well.
+    requireFits("triangles", primitives.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
     WideTree tree = collapse(buildBinaryTree(input, primitives, true));
-    if (!fits(tree)) tree = collapse(buildBinaryTree(input, primitives, false));
-    if (!fits(tree))
-        throw Error("The scene's {} triangles need tables of {} and {} bytes, more than this device's limit of {}.",
-                    primitives.size(), tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE * sizeof(glm::uvec4),
-                    tree.nodes.size() * shared::BVH_NODE_STRIDE * sizeof(glm::uvec4), maxTableBytes);
+    if (bytesOf(tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE) > maxTableBytes) {
+        tree = collapse(buildBinaryTree(input, primitives, false));
+    }
+    requireFits("triangles", tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
+    const NodeLayout layout = layOut(tree);
+    requireFits("tree nodes", layout.rows, shared::BVH_NODE_STRIDE,
+                std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES, shared::BVH_NODE_STRIDE)));
 
-    bvh.nodes = encodeNodes(tree);
+    bvh.nodes = encodeNodes(tree, layout);
     bvh.triangles = encodeTriangles(tree, input);
     bvh.stats.nodes = tree.nodes.size();
     bvh.stats.triangleRecords = tree.triangles.size();

@@ -43,29 +43,23 @@ uint32_t quantize(double value)
     return uint32_t(value);
 }
 
-std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, float margin)
+// Those of one node are contiguous, in order of slots.
+uint32_t firstTriangleOf(const WideNode& node)
+{
+    for (const WideChild& child : node.slots)
+        if (child.kind == WideChild::Kind::Leaf) return child.first;
+    return 0;
+}
+
+std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, uint32_t firstNode, float margin)
 {
     Box box;
     for (const WideChild& child : node.slots)
         if (child.kind != WideChild::Kind::Empty) box.extend(child.box);
 
-    uint32_t masks = 0;
-    uint32_t firstNode = NONE;
-    uint32_t firstTriangle = NONE;
-    for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
-        const WideChild& child = node.slots[slot];
-        if (child.kind == WideChild::Kind::Node) {
-            masks |= 1u << (24 + slot);
-            firstNode = std::min(firstNode, child.first);
-        } else if (child.kind == WideChild::Kind::Leaf) {
-            CHECK(child.count >= 1 && child.count <= BVH_LEAF_TRIANGLES);
-            masks |= ((1u << child.count) - 1u) << (3 * slot);
-            firstTriangle = std::min(firstTriangle, child.first);
-        }
-    }
-
     std::array<glm::uvec4, shared::BVH_NODE_STRIDE> words = {};
-    words[1] = {masks, firstNode == NONE ? 0 : firstNode, firstTriangle == NONE ? 0 : firstTriangle, 0};
+    const uint32_t masks = masksOf(node);
+    words[1] = {masks, firstNode << 8, firstTriangleOf(node), 0};
     if (masks == 0) return words;
     for (int axis = 0; axis < 3; ++axis) {
         const Grid grid = fitGrid(double(box.lower[axis]) - margin, double(box.upper[axis]) + margin);
@@ -89,7 +83,7 @@ std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, flo
 
 } // namespace
 
-std::vector<glm::uvec4> encodeNodes(const WideTree& tree)
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout)
 {
     float magnitude = 0;
     for (const WideChild& child : tree.nodes[0].slots) {
@@ -97,11 +91,10 @@ std::vector<glm::uvec4> encodeNodes(const WideTree& tree)
         const glm::vec3 largest = glm::max(glm::abs(child.box.lower), glm::abs(child.box.upper));
         magnitude = std::max({magnitude, largest.x, largest.y, largest.z});
     }
-    std::vector<glm::uvec4> table;
-    table.reserve(tree.nodes.size() * shared::BVH_NODE_STRIDE);
-    for (const WideNode& node : tree.nodes) {
-        const auto words = encode(node, float(BOX_MARGIN * magnitude));
-        table.insert(table.end(), words.begin(), words.end());
+    std::vector<glm::uvec4> table(size_t{layout.rows} * shared::BVH_NODE_STRIDE);
+    for (size_t i = 0; i < tree.nodes.size(); ++i) {
+        const auto words = encode(tree.nodes[i], layout.first[i], float(BOX_MARGIN * magnitude));
+        std::ranges::copy(words, table.begin() + std::ptrdiff_t(layout.row[i] * shared::BVH_NODE_STRIDE));
     }
     return table;
 }

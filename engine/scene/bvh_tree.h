@@ -72,8 +72,20 @@ WideTree collapse(const BinaryTree& tree);
 // Expected cost of a ray through the root's box.
 double sahCost(const WideTree& tree);
 
+// Where the nodes lie in their table: the child in slot s of node n at row first[n] + s, so that traversal keeps one
+// word a stack entry and counts no bits. Other nodes' children fill the gaps.
+struct NodeLayout {
+    std::vector<uint32_t> row;   // per node; the root's is 0
+    std::vector<uint32_t> first; // per node
+    uint32_t rows = 0;           // of the table, gaps included
+};
+NodeLayout layOut(const WideTree& tree);
+
+// Bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th triangle.
+uint32_t masksOf(const WideNode& node);
+
 // The table "Nodes".
-std::vector<glm::uvec4> encodeNodes(const WideTree& tree);
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout);
 
 // The table "Triangles".
 std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& input);

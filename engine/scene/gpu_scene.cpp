@@ -18,10 +18,13 @@ gpu::Buffer uploadTable(gpu::Device& device, const char* label, std::span<const 
 } // namespace
 
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
-    : nodes_(uploadTable(device, "Nodes", tables.bvh.nodes)), triangles_(uploadTable(device, "Triangles", tables.bvh.triangles)),
-      attributes_(uploadTable(device, "Attributes", tables.attributes)), texels_(uploadTable(device, "Texels", tables.texels)),
+    : nodes_(uploadTable(device, "Nodes", tables.bvh.nodes)),
+      triangles_(uploadTable(device, "Triangles", tables.bvh.triangles)),
+      attributes_(uploadTable(device, "Attributes", tables.attributes)),
+      texels_(uploadTable(device, "Texels", tables.texels)),
       sceneData_(uploadTable(device, "SceneData", tables.sceneData)),
-      uniform_(device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform}))
+      uniform_(
+          device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform}))
 {
     device.queue().writeValue(uniform_, tables.uniform);
 }
@@ -41,7 +44,8 @@ gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& p
 
 uint64_t GpuScene::bytes() const
 {
-    return nodes_.size() + triangles_.size() + attributes_.size() + texels_.size() + sceneData_.size() + uniform_.size();
+    return nodes_.size() + triangles_.size() + attributes_.size() + texels_.size() + sceneData_.size() +
+           uniform_.size();
 }
 
 } // namespace scene

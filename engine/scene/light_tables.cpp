@@ -15,14 +15,20 @@ namespace
 
 using std::numbers::pi;
 
-double largest(const glm::dvec3& v) { return std::max(std::max(v.x, v.y), v.z); }
+double largest(const glm::dvec3& v)
+{
+    return std::max(std::max(v.x, v.y), v.z);
+}
 
 glm::uvec4 row(const glm::dvec3& v, double w)
 {
     return std::bit_cast<glm::uvec4>(glm::vec4(float(v.x), float(v.y), float(v.z), float(w)));
 }
 
-double linearFromSrgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+double linearFromSrgb(double c)
+{
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 // Mean of the largest channel over the whole image, linear: how much of the emission a texture lets through, roughly.
 double meanOfLargest(const Image& image)
@@ -49,7 +55,8 @@ double largestLight(const Scene& scene, double lengthScale)
         if (material.unlit) value = std::max(value, largest(glm::dvec3(glm::vec3(material.baseColor))));
     }
     for (const glm::vec3& radiance : scene.environment.radiance) value = std::max(value, largest(glm::dvec3(radiance)));
-    for (const PunctualLight& light : scene.lights) value = std::max(value, largest(scaledIntensity(light, lengthScale)));
+    for (const PunctualLight& light : scene.lights)
+        value = std::max(value, largest(scaledIntensity(light, lengthScale)));
     return value;
 }
 
@@ -59,8 +66,8 @@ struct Candidate {
     double power = 0;
 };
 
-// Emissive triangles of positive area. A textured emitter counts with its image's mean: the pick probability may be rough,
-// the estimate stays unbiased.
+// Emissive triangles of positive area. A textured emitter counts with its image's mean: the pick probability may be
+// rough, the estimate stays unbiased.
 void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, double radianceScale,
                   std::vector<Candidate>& candidates)
 {
@@ -79,7 +86,8 @@ void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, d
         // In float as the shaders have it: what has no area there cannot be sampled there.
         const float twiceArea = glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
         if (!(twiceArea > 0) || !std::isfinite(twiceArea)) continue;
-        candidates.push_back({shared::LIGHT_TRIANGLE, uint32_t(t), exitance[triangle.material] * 0.5 * double(twiceArea)});
+        candidates.push_back(
+            {shared::LIGHT_TRIANGLE, uint32_t(t), exitance[triangle.material] * 0.5 * double(twiceArea)});
     }
 }
 
@@ -93,12 +101,14 @@ double punctualPower(const PunctualLight& light, const glm::dvec3& intensity, do
     return 0;
 }
 
-void addPunctual(const Scene& scene, double lengthScale, double radius, LightTables& tables, std::vector<Candidate>& candidates)
+void addPunctual(const Scene& scene, double lengthScale, double radius, LightTables& tables,
+                 std::vector<Candidate>& candidates)
 {
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const PunctualLight& light = scene.lights[i];
         const glm::dvec3 intensity = scaledIntensity(light, lengthScale) * tables.radianceScale;
-        const double cosOuter = std::cos(double(light.outerConeAngle)), cosInner = std::cos(double(light.innerConeAngle));
+        const double cosOuter = std::cos(double(light.outerConeAngle)),
+                     cosInner = std::cos(double(light.innerConeAngle));
         const bool spot = light.kind == LightKind::Spot;
         tables.punctual.push_back(row(glm::dvec3(light.position) * lengthScale, cosOuter));
         tables.punctual.push_back(row(intensity, spot ? 1 / (cosInner - cosOuter) : 0));
@@ -123,7 +133,8 @@ double addEnvironment(const Environment& environment, double radius, LightTables
         solidAngle[y] = 2 * pi / environment.width *
                         (std::cos(pi * y / environment.height) - std::cos(pi * (y + 1.0) / environment.height));
     for (size_t i = 0; i < count; ++i) {
-        power[i] = largest(glm::dvec3(environment.radiance[i]) * tables.radianceScale) * solidAngle[i / environment.width];
+        power[i] =
+            largest(glm::dvec3(environment.radiance[i]) * tables.radianceScale) * solidAngle[i / environment.width];
         total += power[i];
     }
     const std::vector<AliasEntry> aliases = buildAliasTable(power);
@@ -133,8 +144,8 @@ double addEnvironment(const Environment& environment, double radius, LightTables
     for (size_t i = 0; i < count; i += 2) {
         const AliasEntry& a = aliases[i];
         const AliasEntry& b = aliases[std::min(i + 1, count - 1)];
-        tables.environmentAliases.emplace_back(std::bit_cast<uint32_t>(a.threshold), a.alias, std::bit_cast<uint32_t>(b.threshold),
-                                               b.alias);
+        tables.environmentAliases.emplace_back(std::bit_cast<uint32_t>(a.threshold), a.alias,
+                                               std::bit_cast<uint32_t>(b.threshold), b.alias);
     }
     tables.counts.environments = 1;
     return pi * radius * radius * total;
@@ -142,7 +153,8 @@ double addEnvironment(const Environment& environment, double radius, LightTables
 
 } // namespace
 
-LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius)
+LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
+                            double radius)
 {
     LightTables tables;
     const double value = largestLight(scene, lengthScale);
@@ -163,7 +175,8 @@ LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& po
         const Candidate& candidate = candidates[i];
         CHECK(candidate.index < 1u << 30);
         tables.lights.emplace_back(std::bit_cast<uint32_t>(aliases[i].threshold), aliases[i].alias,
-                                   std::bit_cast<uint32_t>(aliases[i].probability), candidate.kind | candidate.index << 2);
+                                   std::bit_cast<uint32_t>(aliases[i].probability),
+                                   candidate.kind | candidate.index << 2);
         if (candidate.kind == shared::LIGHT_TRIANGLE) tables.lightOfTriangle[candidate.index] = uint32_t(i);
         if (candidate.kind == shared::LIGHT_ENVIRONMENT) tables.environmentPick = aliases[i].probability;
     }

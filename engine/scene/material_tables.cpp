@@ -18,9 +18,15 @@ constexpr float DIRAC_ROUGHNESS = 1.0f / 64.0f;
 // A solid body of almost the index of air bends nothing: it is thin and clear (ARCHITECTURE.md).
 constexpr float INDEX_OF_AIR = 1.0f / 1024.0f;
 
-glm::uvec4 row(float x, float y, float z, float w) { return std::bit_cast<glm::uvec4>(glm::vec4(x, y, z, w)); }
+glm::uvec4 row(float x, float y, float z, float w)
+{
+    return std::bit_cast<glm::uvec4>(glm::vec4(x, y, z, w));
+}
 
-bool isIdentity(const TextureUse& use) { return use.row0 == glm::vec3(1, 0, 0) && use.row1 == glm::vec3(0, 1, 0); }
+bool isIdentity(const TextureUse& use)
+{
+    return use.row0 == glm::vec3(1, 0, 0) && use.row1 == glm::vec3(0, 1, 0);
+}
 
 // Smallest and largest value of the image's green channel (roughness), in [0, 1].
 std::pair<float, float> greenRange(const Image& image)
@@ -95,7 +101,8 @@ class Builder
             return;
         }
         const Image& image = scene_.images[use.image];
-        uint32_t flags = uint32_t(use.wrapU) << shared::TEXTURE_WRAP_U_SHIFT | uint32_t(use.wrapV) << shared::TEXTURE_WRAP_V_SHIFT;
+        uint32_t flags = uint32_t(use.wrapU) << shared::TEXTURE_WRAP_U_SHIFT | uint32_t(use.wrapV)
+                                                                                   << shared::TEXTURE_WRAP_V_SHIFT;
         if (use.nearest) flags |= shared::TEXTURE_NEAREST;
         if (use.uvSet == 1) flags |= shared::TEXTURE_SECOND_UV;
         if (srgb) flags |= shared::TEXTURE_SRGB;

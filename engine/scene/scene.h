@@ -9,7 +9,8 @@
 
 #include <glm/glm.hpp>
 
-namespace scene {
+namespace scene
+{
 
 constexpr uint32_t NONE = 0xffffffffu;
 
@@ -42,18 +43,18 @@ struct Material {
     std::string name;
     glm::vec4 baseColor = {1, 1, 1, 1}; // linear; a is alpha
     float metallic = 1;
-    float roughness = 1;         // alpha = roughness^2
+    float roughness = 1;            // alpha = roughness^2
     glm::vec3 emission = {0, 0, 0}; // emissiveFactor * emissiveStrength, radiance
     float normalScale = 1;
     float ior = 1.5f;
-    float specular = 1;                    // KHR_materials_specular: weight of the dielectric specular lobe
-    glm::vec3 specularColor = {1, 1, 1};   // and its tint at normal incidence
-    float transmission = 0;                // KHR_materials_transmission
-    bool thin = true;                      // thin-walled: no refraction. false: KHR_materials_volume with thickness > 0
+    float specular = 1;                  // KHR_materials_specular: weight of the dielectric specular lobe
+    glm::vec3 specularColor = {1, 1, 1}; // and its tint at normal incidence
+    float transmission = 0;              // KHR_materials_transmission
+    bool thin = true;                    // thin-walled: no refraction. false: KHR_materials_volume with thickness > 0
     Alpha alpha = Alpha::Opaque;
-    float alphaCutoff = 0.5f; // Mask only
-    bool doubleSided = false; // emission leaves both sides; scattering is two-sided always
-    bool unlit = false;       // KHR_materials_unlit: shows baseColor, scatters nothing
+    float alphaCutoff = 0.5f;            // Mask only
+    bool doubleSided = false;            // emission leaves both sides; scattering is two-sided always
+    bool unlit = false;                  // KHR_materials_unlit: shows baseColor, scatters nothing
     TextureUse baseColorTexture;         // sRGB, a linear
     TextureUse metallicRoughnessTexture; // g roughness, b metallic
     TextureUse normalTexture;
@@ -64,7 +65,8 @@ struct Material {
 };
 
 struct Triangle {
-    std::array<uint32_t, 3> vertices = {0, 0, 0}; // counter-clockwise seen from the front, also after mirroring transforms
+    std::array<uint32_t, 3> vertices = {0, 0,
+                                        0}; // counter-clockwise seen from the front, also after mirroring transforms
     uint32_t material = 0;
 };
 
@@ -83,18 +85,19 @@ struct PunctualLight {
 struct Camera {
     std::string name;
     bool orthographic = false;
-    double yfov = 0.8;                  // radians, perspective, full angle
-    double aspect = 0;                  // of the glTF camera; 0: none. The picture's own aspect wins (vertical field is kept)
-    double xmag = 1, ymag = 1;          // orthographic half extents
-    glm::dvec3 position = {0, 0, 0};    // relative to Scene::origin
-    glm::dvec3 right = {1, 0, 0};       // unit, orthogonal
+    double yfov = 0.8;         // radians, perspective, full angle
+    double aspect = 0;         // of the glTF camera; 0: none. The picture's own aspect wins (vertical field is kept)
+    double xmag = 1, ymag = 1; // orthographic half extents
+    glm::dvec3 position = {0, 0, 0}; // relative to Scene::origin
+    glm::dvec3 right = {1, 0, 0};    // unit, orthogonal
     glm::dvec3 up = {0, 1, 0};
     glm::dvec3 forward = {0, 0, -1};
-    glm::dvec3 target = {0, 0, -1};     // what an orbit turns around, relative to Scene::origin
+    glm::dvec3 target = {0, 0, -1}; // what an orbit turns around, relative to Scene::origin
 };
 
 // Equirectangular radiance, row 0 is +y (up), column 0 starts at azimuth 0; empty when width is 0.
-// Direction of (u, v) in [0,1)^2: theta = pi v from +y, phi = 2 pi u: (sin theta cos phi, cos theta, sin theta sin phi).
+// Direction of (u, v) in [0,1)^2: theta = pi v from +y, phi = 2 pi u: (sin theta cos phi, cos theta, sin theta sin
+// phi).
 struct Environment {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -105,9 +108,10 @@ struct Scene {
     std::string name;
     glm::dvec3 origin = {0, 0, 0}; // world position of (0,0,0) below: the box's centre, subtracted in float64
 
-    // Vertices. positions and normals are always there; the rest is empty when no mesh has it, else as long as positions.
+    // Vertices. positions and normals are always there; the rest is empty when no mesh has it, else as long as
+    // positions.
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals; // unit, shading
+    std::vector<glm::vec3> normals;  // unit, shading
     std::vector<glm::vec4> tangents; // unit, w is the handedness
     std::vector<glm::vec2> uv0;
     std::vector<glm::vec2> uv1;

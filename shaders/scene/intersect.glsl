@@ -3,9 +3,17 @@
 // The includer declares the tables Nodes and Triangles, the constant bool HAS_ALPHA and
 // bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of flagged triangles only.
 //
-// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing, hence stores to the stack without
-// conditions and planes picked by the ray's signs. The inner loop tests at its start: one that tests at its end inside
-// another such loop is compiled wrongly by SwiftShader.
+// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
+// least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
+// ray's signs. SwiftShader, which reads tables from storage buffers, compiles a nest of such loops wrongly: there the
+// inner one tests at its start (tests/bench/LOG.md).
+#ifdef TABLES_IN_STORAGE
+#define LOOP_BEGIN(CONDITION) while (CONDITION) {
+#define LOOP_END(CONDITION) }
+#else
+#define LOOP_BEGIN(CONDITION) do {
+#define LOOP_END(CONDITION) } while (CONDITION);
+#endif
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
@@ -138,15 +146,15 @@ uint meetChildren(TraversalRay r, float tMax, uvec4 grid, uint masks, uvec4 a, u
     return hits & masks;
 }
 
-// Moves bit s to bit s ^ signs: ascending bits are then roughly front to back.
-uint frontToBack(uint slots, uint signs)
+// Moves bit s to bit s ^ order: with a direction's signs for order, ascending bits are roughly front to back.
+uint inOrder(uint slots, uint order)
 {
     uint x = ((slots & 0x55u) << 1) | ((slots >> 1) & 0x55u);
-    slots = (signs & 1u) != 0u ? x : slots;
+    slots = (order & 1u) != 0u ? x : slots;
     uint y = ((slots & 0x33u) << 2) | ((slots >> 2) & 0x33u);
-    slots = (signs & 2u) != 0u ? y : slots;
+    slots = (order & 2u) != 0u ? y : slots;
     uint z = ((slots & 0x0fu) << 4) | ((slots >> 4) & 0x0fu);
-    return (signs & 4u) != 0u ? z : slots;
+    return (order & 4u) != 0u ? z : slots;
 }
 
 uint bitsBelow(uint bit)
@@ -173,66 +181,71 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     float slope = dot(normal, r.direction);
     bool inside = (w0 >= 0.0 && w1 >= 0.0 && w2 >= 0.0) || (w0 <= 0.0 && w1 <= 0.0 && w2 <= 0.0);
     bool met = inside && total != 0.0 && slope != 0.0;
-    barycentric = vec2(w1, w2) / (met ? total : 1.0);
-    t = dot(normal, a) / (met ? slope : 1.0);
+    float invTotal = 1.0/total;
+    barycentric = vec2(w1, w2) * invTotal;
+    t = dot(normal, a) / slope;
     return met;
 }
 
-// Depth-first; a group is the rest of one node's child nodes: bits 0..7 those to visit, front to back; 8..15 all that
-// are.
+// Depth-first: the nearest first for the nearest hit; for any hit the farthest, as a ray begins along its own surface,
+// where it meets boxes but no triangles. A group is the rest of one node's child nodes: those to visit in bits 0..7, in
+// that order; above them what the slot adds to.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
 {
-    uint stackBase[BVH_STACK_SIZE];
-    uint stackGroup[BVH_STACK_SIZE];
+    uint stack[BVH_STACK_SIZE]; // of groups
     uint depth = 0u;
 
     TraversalRay r = prepare(ray);
     Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
-    uint base = 0u;
-    uint group = 1u; // the root: of its parent's child nodes the first in order, none before it
+    uint order = any ? r.signs ^ 7u : r.signs;
+    uint group = 1u << order; // slot 0 of base 0: the root
     bool more = true;
+    bool blocked = false;
     do {
-        uint slot = uint(findLSB(group & 255u)) ^ r.signs;
-        uint node = BVH_NODE_STRIDE * (base + uint(bitCount((group >> 8) & bitsBelow(slot))));
+        uint slot = uint(findLSB(group)) ^ order;
+        uint node = BVH_NODE_STRIDE * ((group >> 8) + slot);
         group &= group - 1u;
-        stackBase[depth] = base;
-        stackGroup[depth] = group;
+        stack[depth] = group;
         depth += (group & 255u) != 0u ? 1u : 0u;
 
         uvec4 links = FETCH(Nodes, node + 1u);
         uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
                                  FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
-        base = links.y;
-        group = frontToBack(hits >> 24, r.signs) | ((links.x >> 16) & 0xff00u);
+        group = links.y | inOrder(hits >> 24, order);
 
         uint triangles = hits & 0xffffffu;
-        while (triangles != 0u) {
-            uint bit = uint(findLSB(triangles));
+        LOOP_BEGIN(triangles != 0u)
+            bool valid = triangles != 0u;
+            uint earlier = links.x & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
+            uint record = valid ? BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(earlier))) : 0u;
             triangles &= triangles - 1u;
-            uint record = BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(links.x & bitsBelow(bit))));
             uvec4 v0 = FETCH(Triangles, record);
             vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
             vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
             float t;
             vec2 barycentric;
-            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric);
+            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
             uint triangle = v0.w & ~BVH_ALPHA_FLAG;
-            met = met && t >= r.tMin && (t < hit.t || (t == hit.t && triangle < hit.triangle));
+            met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
             if (HAS_ALPHA) {
                 if (met && (v0.w & BVH_ALPHA_FLAG) != 0u) met = alphaPasses(triangle, barycentric, alphaSeed);
             }
-            if (met) hit = Hit(triangle, barycentric, t);
-            if (any && met) triangles = 0u;
-        }
+            if (any) {
+                blocked = blocked || met;
+                triangles = met ? 0u : triangles;
+            } else if (met) {
+                hit = Hit(triangle, barycentric, t);
+            }
+        LOOP_END(triangles != 0u)
 
-        if ((group & 255u) == 0u) {
-            more = depth != 0u;
-            depth = more ? depth - 1u : 0u;
-            base = stackBase[depth];
-            group = stackGroup[depth];
-        }
-        if (any && hit.triangle != NO_HIT) more = false;
+        bool empty = (group & 255u) == 0u;
+        more = !empty || depth != 0u;
+        depth -= empty && more ? 1u : 0u;
+        uint top = stack[depth];
+        group = empty ? top : group;
+        more = more && !blocked;
     } while (more);
+    if (blocked) hit.triangle = 0u;
     hit.t = max(hit.t + r.advance, 0.0);
     return hit;
 }

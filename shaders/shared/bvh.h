@@ -7,12 +7,12 @@
 //   0: xyz  the grid's corner p (float bits)
 //      w    biased exponents of the grid's steps: x | y << 8 | z << 16. Box plane = p + byte * step
 //   1: x    masks: bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th triangle, k < 3; none: empty
-//      y    node index of the first child node; the others follow in order of slots
+//      y    b << 8: the node in slot s is node b + s
 //      z    record index of the first triangle; the others follow in order of mask bits
 //   2: lower x of slots 0..3, 4..7; lower y    (one byte a slot, lowest byte first)
 //   3: lower z; upper x
 //   4: upper y; upper z
-// Node 0 is the root, its grid covers the scene.
+// Node 0 is the root, its grid covers the scene. Children of other nodes fill the gaps that b + s leaves.
 //
 // Table "Triangles", BVH_TRIANGLE_STRIDE elements a record: xyz of element i is vertex i (float bits); w of element 0 is the
 // triangle's index, with BVH_ALPHA_FLAG where its alpha must be asked.
@@ -24,6 +24,7 @@
 SHARED_BEGIN
 SHARED_CONST uint BVH_NODE_STRIDE = 5u;
 SHARED_CONST uint BVH_TRIANGLE_STRIDE = 3u;
+SHARED_CONST uint BVH_MAX_NODES = 1u << 24; // b << 8 must not overflow
 SHARED_CONST uint BVH_STACK_SIZE = 32u; // entries; the builder keeps every tree within it
 SHARED_CONST uint BVH_ALPHA_FLAG = 0x80000000u;
 SHARED_END

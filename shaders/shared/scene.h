@@ -1,5 +1,6 @@
-// The scene's tables (set 1): record layouts, in units of uvec4. Written by engine/scene/gpu_scene.cpp, read by shaders/scene/.
-// All lengths are scaled by a power of two so that the scene's radius is about 1, all light so that its largest value is about 1.
+// The scene's tables (set 1): record layouts, in units of uvec4. Written by engine/scene/gpu_scene.cpp, read by
+// shaders/scene/. All lengths are scaled by a power of two so that the scene's radius is about 1, all light so that its
+// largest value is about 1.
 #ifndef SHADERS_SHARED_SCENE_H
 #define SHADERS_SHARED_SCENE_H
 
@@ -16,11 +17,12 @@ SHARED_CONST uint ATTRIBUTE_ROWS_BARE = 4u;
 SHARED_CONST uint ATTRIBUTE_ROWS_UV = 6u;
 SHARED_CONST uint ATTRIBUTE_ROWS_FULL = 9u;
 
-// Table SceneData holds, at the offsets in SceneUniform: materials, lights, punctual lights, environment texels and aliases.
-// Material: rows 0-4, then TEXTURE_ROWS rows for each texture use.
+// Table SceneData holds, at the offsets in SceneUniform: materials, lights, punctual lights, environment texels and
+// aliases. Material: rows 0-4, then TEXTURE_ROWS rows for each texture use.
 //   0 baseColor rgba | 1 emission rgb, flags | 2 metallic, roughness, ior, specular | 3 F0 dielectric rgb, transmission
 //   4 normalScale, alphaCutoff, 0, 0
-// Texture use: 0 first block, width | height << 16, flags, 0 | 1 row0 xyz, 0 | 2 row1 xyz, 0. First block NO_INDEX: none.
+// Texture use: 0 first block, width | height << 16, flags, 0 | 1 row0 xyz, 0 | 2 row1 xyz, 0. First block NO_INDEX:
+// none.
 SHARED_CONST uint TEXTURE_ROWS = 3u;
 SHARED_CONST uint TEXTURE_BASE_COLOR = 0u;
 SHARED_CONST uint TEXTURE_METALLIC_ROUGHNESS = 1u;
@@ -46,27 +48,29 @@ SHARED_CONST uint TEXTURE_NEAREST = 16u;
 SHARED_CONST uint TEXTURE_SECOND_UV = 32u;
 SHARED_CONST uint TEXTURE_SRGB = 64u;
 
-// Light: alias threshold, alias index, pick probability, kind | index << 2. The index is a triangle or a punctual light.
+// Light: alias threshold, alias index, pick probability, kind | index << 2. The index is a triangle or a punctual
+// light.
 SHARED_CONST uint LIGHT_TRIANGLE = 0u;
-SHARED_CONST uint LIGHT_PUNCTUAL = 1u;    // point or spot
+SHARED_CONST uint LIGHT_PUNCTUAL = 1u; // point or spot
 SHARED_CONST uint LIGHT_DIRECTIONAL = 2u;
 SHARED_CONST uint LIGHT_ENVIRONMENT = 3u;
-// Punctual light: position xyz, cos outer | intensity rgb, 1 / (cos inner - cos outer) or 0 for a point | direction xyz, 0
+// Punctual light: position xyz, cos outer | intensity rgb, 1 / (cos inner - cos outer) or 0 for a point | direction
+// xyz, 0
 SHARED_CONST uint PUNCTUAL_ROWS = 3u;
 // Environment texel: radiance rgb, probability / solid angle. Alias rows, two texels each: threshold, index.
 
 struct SceneUniform {
-    uint attributeRows;     // rows of table Attributes per triangle
-    uint materialOffset;    // rows in table SceneData
-    uint lightOffset;       // rows
-    uint lightCount;        // lights that next-event estimation picks from
-    uint punctualOffset;    // rows
-    uint environmentOffset; // rows
+    uint attributeRows;          // rows of table Attributes per triangle
+    uint materialOffset;         // rows in table SceneData
+    uint lightOffset;            // rows
+    uint lightCount;             // lights that next-event estimation picks from
+    uint punctualOffset;         // rows
+    uint environmentOffset;      // rows
     uint environmentAliasOffset; // rows
-    uint environmentWidth;  // texels
-    uint environmentHeight; // texels
-    float environmentPick;  // probability that next-event estimation picks the environment
-    float radius;           // of the bounding sphere about the origin, scaled
+    uint environmentWidth;       // texels
+    uint environmentHeight;      // texels
+    float environmentPick;       // probability that next-event estimation picks the environment
+    float radius;                // of the bounding sphere about the origin, scaled
     uint padding0;
 };
 

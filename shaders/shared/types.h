@@ -6,7 +6,8 @@
 #ifdef __cplusplus
 #include <cstdint>
 #include <glm/glm.hpp>
-namespace shared {
+namespace shared
+{
 using uint = uint32_t;
 using vec2 = glm::vec2;
 using uvec2 = glm::uvec2;
@@ -14,7 +15,9 @@ using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
 using mat4 = glm::mat4;
 } // namespace shared
-#define SHARED_BEGIN namespace shared {
+#define SHARED_BEGIN                                                                                                   \
+    namespace shared                                                                                                   \
+    {
 #define SHARED_END }
 #define SHARED_CONST inline constexpr
 #else

@@ -31,7 +31,8 @@ std::string pinDriver()
 {
     // Whoever has pinned a driver that we do not know (a newer build of one) knows better.
     const char* pinned = std::getenv("VK_ICD_FILENAMES");
-    if (pinned && std::ranges::none_of(DRIVERS, [&](const KnownDriver& d) { return pinned == std::string(d.manifest); }))
+    if (pinned &&
+        std::ranges::none_of(DRIVERS, [&](const KnownDriver& d) { return pinned == std::string(d.manifest); }))
         return "";
     for (const KnownDriver& driver : DRIVERS) {
         if (driver.device != wantedDevice()) continue;

@@ -1,10 +1,9 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
-#include "engine/base/files.h"
-#include "passes/camera_choice.h"
 #include "passes/renderer.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
+#include "ui/cli/motion_options.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/progress.h"
 #include "ui/cli/run_report.h"
@@ -33,14 +32,14 @@ struct RenderCommand {
     std::string scene, output, stats;
     bool quiet = false;
     DeviceOptions device;
+    MotionOptions motion;
     SettingsOptions settings;
 
     int run() const;
-    void renderFrames(passes::Renderer& renderer, Progress& progress, RunReport& report) const;
 };
 
 // Until the settings say stop, or Ctrl-C does.
-void RenderCommand::renderFrames(passes::Renderer& renderer, Progress& progress, RunReport& report) const
+void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, Progress& progress, RunReport& report)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
@@ -49,6 +48,7 @@ void RenderCommand::renderFrames(passes::Renderer& renderer, Progress& progress,
     double elapsed = 0;
     const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
     do {
+        if (cameraAt) renderer.setCamera(cameraAt(report.frames));
         renderer.renderFrame();
         report.frames = renderer.frameCount();
         elapsed = secondsSince(start);
@@ -65,7 +65,8 @@ void RenderCommand::renderFrames(passes::Renderer& renderer, Progress& progress,
 
 int RenderCommand::run() const
 {
-    RunReport report{.scene = scene, .settings = settings.read()};
+    RunReport report{.scene = scene, .settings = settings.read(), .extra = motion.toText()};
+    motion.adjust(report.settings, settings);
     requireWritable(output, {".exr", ".png"});
     if (!stats.empty()) requireWritable(stats);
 
@@ -73,12 +74,13 @@ int RenderCommand::run() const
     const auto loadStart = std::chrono::steady_clock::now();
     gpu::Device gpu = device.open();
     const scene::Scene world = openScene(scene, report.settings, progress);
+    const passes::CameraAt cameraAt = motion.read(world, report.settings);
     report.adapter = gpu.adapter();
     report.loadSeconds = secondsSince(loadStart);
     passes::Renderer renderer(gpu, world, report.settings,
                               [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
 
-    renderFrames(renderer, progress, report);
+    renderFrames(renderer, cameraAt, progress, report);
     const image::Image picture = renderer.readColor();
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
@@ -110,6 +112,7 @@ Action setUpRender(CLI::App& app)
         ->option_text("FILE.json");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);
+    command->motion.addTo(app);
     command->settings.addTo(app);
     return [command] { return command->run(); };
 }

@@ -82,7 +82,6 @@ std::vector<Slot> slotsOf(const Bvh& bvh, uint32_t node)
         return words[2 + word / 4][int(word % 4)] >> (8 * (slot % 4)) & 255u;
     };
     std::vector<Slot> slots;
-    uint32_t nextNode = words[1].y;
     uint32_t nextRecord = words[1].z;
     for (uint32_t s = 0; s < 8; ++s) {
         Slot slot;
@@ -92,7 +91,7 @@ std::vector<Slot> slotsOf(const Bvh& bvh, uint32_t node)
             slot.box.lower[axis] = float(corner + step * byteOf(uint32_t(axis), s));
             slot.box.upper[axis] = float(corner + step * byteOf(uint32_t(axis) + 3, s));
         }
-        if ((words[1].x >> (24 + s) & 1u) != 0) slot.node = nextNode++;
+        if ((words[1].x >> (24 + s) & 1u) != 0) slot.node = (words[1].y >> 8) + s;
         for (uint32_t k = 0; k < 3; ++k)
             if ((words[1].x >> (3 * s + k) & 1u) != 0)
                 slot.triangles.push_back(bvh.triangles[size_t{nextRecord++} * shared::BVH_TRIANGLE_STRIDE].w &
@@ -177,7 +176,8 @@ TEST(Bvh, ReachesEveryTriangleAndEveryNodeOnce)
                 }
         }
         EXPECT_EQ(nodes, bvh.stats.nodes);
-        EXPECT_EQ(bvh.nodes.size(), nodes * shared::BVH_NODE_STRIDE);
+        EXPECT_GE(bvh.nodes.size(), nodes * shared::BVH_NODE_STRIDE);
+        EXPECT_LE(double(bvh.nodes.size()), (1.05 * double(nodes) + 8) * shared::BVH_NODE_STRIDE) << "too many gaps";
     }
 }
 

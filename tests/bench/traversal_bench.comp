@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Traces the given rays and stores what it finds: nothing but traversal is timed.
+#include "lib/table.glsl"
+#include "shared/types.h"
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const bool ANY_HIT = false;
+const bool HAS_ALPHA = false;
+
+TABLE(SET_SCENE, 0, Nodes);
+TABLE(SET_SCENE, 1, Triangles);
+layout(set = SET_PASS, binding = 0, std430) readonly buffer Rays { vec4 rays[]; };    // origin, tMax; direction, unused
+layout(set = SET_PASS, binding = 1, std430) writeonly buffer Hits { uvec4 hits[]; }; // triangle or occluded, u, v, t
+
+bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed) { return true; }
+
+#include "scene/intersect.glsl"
+
+void main()
+{
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= uint(hits.length())) return;
+    vec4 origin = rays[2u * index];
+    Ray ray = Ray(origin.xyz, rays[2u * index + 1u].xyz, origin.w);
+    if (ANY_HIT) {
+        hits[index] = uvec4(occluded(ray, 0u) ? 0u : NO_HIT, 0u, 0u, 0u);
+    } else {
+        Hit hit = closestHit(ray, 0u);
+        hits[index] = uvec4(hit.triangle, floatBitsToUint(vec3(hit.barycentric, hit.t)));
+    }
+}

@@ -1,0 +1,63 @@
+#include "tests/support/trichrome.h"
+
+#include "engine/gpu/gpu.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace
+{
+
+std::string deviceName()
+{
+    const char* wanted = std::getenv("TRICHROME_TEST_DEVICE");
+    return wanted ? wanted : "llvmpipe";
+}
+
+// It lies beside the tests' own executables.
+std::filesystem::path executable()
+{
+    return std::filesystem::read_symlink("/proc/self/exe").replace_filename("trichrome");
+}
+
+bool isIn(const std::vector<std::string>& words, const std::string& word)
+{
+    return std::ranges::find(words, word) != words.end();
+}
+
+} // namespace
+
+Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter)
+{
+    if (arguments.size() > 1 && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
+        arguments.insert(arguments.end(), {"--device", deviceName()});
+    return runProgram(executable(), {.arguments = std::move(arguments), .interruptAfter = interruptAfter});
+}
+
+Outcome Trichrome::runWell(const std::vector<std::string>& arguments)
+{
+    Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.err, "");
+    return outcome;
+}
+
+void Trichrome::expectRefusal(const std::vector<std::string>& arguments, int exitCode, const std::string& part)
+{
+    const Outcome outcome = run(arguments);
+    std::string line;
+    for (const std::string& word : arguments) line += word + " ";
+    SCOPED_TRACE(line + "\n" + outcome.err);
+    EXPECT_EQ(outcome.exitCode, exitCode);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << "expected: " << part;
+    EXPECT_EQ(outcome.err.find("terminate"), std::string::npos);
+}
+
+void Trichrome::SetUp()
+{
+    for (const gpu::Adapter& adapter : gpu::enumerateAdapters())
+        if (adapter.name.find(deviceName()) != std::string::npos) return;
+    GTEST_SKIP() << "SKIPPED, COMMANDS NOT TESTED: there is no Vulkan device " << deviceName()
+                 << " (Debian package mesa-vulkan-drivers)";
+}

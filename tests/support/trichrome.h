@@ -1,0 +1,23 @@
+#pragma once
+// The fixture of tests that run the trichrome executable on the test device.
+
+#include "tests/support/program.h"
+
+#include <gtest/gtest.h>
+
+class Trichrome : public testing::Test
+{
+  protected:
+    // Adds --device to commands that take it.
+    static Outcome run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter = {});
+
+    // Expects exit code 0 and nothing on stderr.
+    static Outcome runWell(const std::vector<std::string>& arguments);
+
+    // Expects one sentence on stderr that contains `part`, nothing on stdout, and the exit code.
+    static void expectRefusal(const std::vector<std::string>& arguments, int exitCode, const std::string& part);
+
+    void SetUp() override; // skips when the device's driver is not installed
+
+    TemporaryDirectory directory;
+};
