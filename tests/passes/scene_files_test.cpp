@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "engine/base/error.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/gltf_loader.h"
+#include "engine/scene/scene_tables.h"
 #include "passes/renderer.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/shared_files.h"
@@ -40,6 +42,20 @@ class SceneFiles : public GpuTest
     }
 };
 
+// What the device would see of a scene: many malformed files differ in nothing that reaches it.
+std::string fingerprint(const scene::Scene& scene)
+{
+    const scene::SceneTables tables = scene::makeSceneTables(scene, uint64_t{1} << 27, {});
+    std::string bytes;
+    for (const auto* table :
+         {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels, &tables.sceneData})
+        bytes.append(reinterpret_cast<const char*>(table->data()), table->size() * sizeof(glm::uvec4));
+    const scene::Camera& camera = scene.cameras[0];
+    for (const glm::dvec3& v : {camera.position, camera.forward, glm::dvec3(camera.yfov, camera.xmag, camera.ymag)})
+        bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+    return bytes;
+}
+
 scene::Scene underSky(const std::filesystem::path& file)
 {
     scene::Scene scene;
@@ -62,29 +78,28 @@ std::optional<scene::Scene> tryLoad(const MalformedFile& file)
 TEST_F(SceneFiles, MalformedOnesThatLoad)
 {
     SKIP_WITHOUT_SHARED("malformed/manifest.json");
-    size_t rendered = 0;
+    std::set<std::string> rendered;
     for (const MalformedFile& file : malformedFiles()) {
         if (file.kind == "image" || !file.mayLoad) continue;
         const std::optional<scene::Scene> scene = tryLoad(file);
-        if (!scene) continue;
+        if (!scene || !rendered.insert(fingerprint(*scene)).second) continue;
         SCOPED_TRACE(file.path.filename().string() + ": " + file.why);
         expectFinite(*scene);
-        ++rendered;
     }
-    EXPECT_GE(rendered, 50u); // the manifest promises as many
+    std::printf("%zu different scenes\n", rendered.size());
+    EXPECT_GE(rendered.size(), 50u);
 }
 
 TEST_F(SceneFiles, ConformanceModels)
 {
     SKIP_WITHOUT_SHARED("scenes/conformance");
-    size_t rendered = 0;
-    for (const std::filesystem::path& file : sharedModels("scenes/conformance")) {
-        if (!file.stem().string().ends_with("_lit")) continue;
-        SCOPED_TRACE(file.filename().string());
-        expectFinite(scene::loadGltf(file));
-        ++rendered;
+    for (const std::string name :
+         {"AlphaBlendModeTest", "AttenuationTest", "BoxVertexColors", "Cameras", "CesiumMan", "EmissiveStrengthTest",
+          "GlassBrokenWindow", "LightsPunctualLamp", "MultiUVTest", "NormalTangentMirrorTest", "SpecularTest",
+          "TextureTransformTest", "TransmissionRoughnessTest", "TwoSidedPlane", "UnlitTest"}) {
+        SCOPED_TRACE(name);
+        expectFinite(scene::loadGltf(sharedPath("scenes/conformance/" + name + "/" + name + "_lit.gltf")));
     }
-    EXPECT_GE(rendered, 45u);
 }
 
 TEST_F(SceneFiles, Sponza)
