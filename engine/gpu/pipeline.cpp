@@ -22,12 +22,21 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
     const Limits& limits = device.physical.adapter.limits;
     const std::string& deviceName = device.physical.adapter.name;
 
-    // Tables count, whatever they are here: elsewhere they are storage buffers.
-    const auto storage =
-        std::ranges::count_if(shader.bindings, [](const Binding& b) { return b.kind != Binding::Kind::Uniform; });
+    // Tables do not count as storage buffers: in WebGPU, which has no texel buffers, they would be textures. Where they
+    // are storage buffers, what this very device allows must hold all.
+    const auto count = [&](auto... kinds) {
+        return uint64_t(
+            std::ranges::count_if(shader.bindings, [&](const Binding& b) { return ((b.kind == kinds) || ...); }));
+    };
+    const uint64_t storage = count(Binding::Kind::Storage);
     if (storage > limits.storageBuffersPerStage)
-        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the limit of {}.", label, storage,
+        throw Error("Shader \"{}\" declares {} storage buffers, more than the limit of {}.", label, storage,
                     limits.storageBuffersPerStage);
+    const uint64_t all = count(Binding::Kind::Storage, Binding::Kind::Table);
+    const uint32_t most = device.properties.limits.maxPerStageDescriptorStorageBuffers;
+    if (!limits.tablesAreTexelBuffers && all > most)
+        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of \"{}\".", label, all,
+                    most, deviceName);
 
     uint64_t invocations = 1;
     for (uint32_t axis = 0; axis < 3; ++axis) {

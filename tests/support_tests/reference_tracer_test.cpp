@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/scene/procedural.h"
 #include "engine/scene/shapes.h"
+#include "tests/support/closed_forms.h"
 #include "tests/support/reference_material.h"
 
 namespace support
@@ -18,113 +18,34 @@ using glm::dvec3;
 
 constexpr double PI = std::numbers::pi;
 
-passes::Settings small(uint32_t size, uint32_t maxBounces)
+void expectAgreement(const ClosedForm& form, uint64_t samplesPerPixel, double margin)
 {
-    passes::Settings settings;
-    settings.width = settings.height = size;
-    settings.maxBounces = maxBounces;
-    return settings;
+    const PictureEstimates computed = pictureOf(reference(form.scene, form.settings, samplesPerPixel, 1));
+    const TileVerdict verdict = picturesAgree(computed, form.exactly(), margin, 1e-6);
+    EXPECT_TRUE(verdict.passes) << form.name << ": " << verdict.summary;
 }
 
-// Every pixel within 4.5 standard errors of a known value; where there is no variance, within rounding.
-void expectPixels(const PixelEstimates& picture, const std::function<dvec3(uint32_t x, uint32_t y)>& expected)
+TEST(Reference, AgreesWithClosedFormsOfLights)
 {
-    for (uint32_t i = 0; i < picture.pixels.size(); ++i) {
-        const dvec3 truth = expected(i % picture.width, i / picture.width);
-        for (int c = 0; c < 3; ++c) {
-            const Estimate& e = picture.pixels[i][static_cast<size_t>(c)];
-            EXPECT_NEAR(e.mean, truth[c], 4.5 * std::sqrt(e.varianceOfMean) + 1e-6 * truth[c])
-                << "pixel " << i << " channel " << c;
-        }
-    }
-}
-
-// Looks straight down on the floor y = 0 from height 1; pixel (x, y) of a size x size picture sees this point of it.
-scene::Scene floorSeenFromAbove(const scene::Material& material)
-{
-    scene::Scene scene;
-    scene::addQuad(scene, scene::addMaterial(scene, material), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
-    scene::Camera camera;
-    camera.position = {0, 1, 0};
-    camera.right = {1, 0, 0};
-    camera.up = {0, 0, -1};
-    camera.forward = {0, -1, 0};
-    camera.yfov = PI / 2;
-    scene.cameras.push_back(camera);
-    return scene;
-}
-dvec3 seenPoint(uint32_t x, uint32_t y, uint32_t size)
-{
-    return {2 * (x + 0.5) / size - 1, 0, 2 * (y + 0.5) / size - 1};
+    for (const ClosedForm& form : closedForms(16)) expectAgreement(form, 2000, 0.01);
 }
 
 TEST(Reference, FurnaceSumsTheGeometricSeries)
 {
-    const scene::Scene scene = scene::makeFurnace();
-    for (const uint32_t depth : {0u, 1u, 3u})
-        expectPixels(reference(scene, small(2, depth), 2000, depth), [&](uint32_t, uint32_t) {
-            return 1.0 - glm::pow(dvec3(scene::FURNACE_ALBEDO), dvec3(depth + 1.0));
-        });
+    for (const uint32_t depth : {0u, 1u, 3u}) expectAgreement(furnace(8, depth), 400, 0.01);
 }
 
-TEST(Reference, PointLightFallsOffWithTheInverseSquare)
+TEST(Reference, GgxKeepsItsAlbedo)
 {
-    scene::Scene scene = floorSeenFromAbove(scene::diffuse("floor", {0.5f, 0.4f, 0.3f}));
-    scene.lights.push_back({.intensity = {1, 2, 3}, .position = {0.3f, 0.7f, -0.2f}});
-    expectPixels(reference(scene, small(8, 1), 2, 1), [&](uint32_t x, uint32_t y) {
-        const dvec3 to = dvec3(scene.lights[0].position) - seenPoint(x, y, 8);
-        const double r = glm::length(to);
-        return dvec3(scene.materials[0].baseColor) / PI * dvec3(1, 2, 3) * to.y / (r * r * r);
-    });
+    for (const float roughness : {0.2f, 1.0f}) expectAgreement(ggxUnderWhiteSky(8, roughness, 0.3), 4000, 0.01);
 }
 
-TEST(Reference, SpotLightAndDirectionalLightHaveTheirForms)
+// With the parameters of the surface under test, on the floor y = 0.
+scene::Scene floorOf(const scene::Material& material)
 {
-    scene::Scene scene = floorSeenFromAbove(scene::diffuse("floor", {0.5f, 0.5f, 0.5f}));
-    scene.lights.push_back({.kind = scene::LightKind::Spot,
-                            .intensity = {1, 1, 1},
-                            .position = {0, 1, 0},
-                            .direction = {0, -1, 0},
-                            .innerConeAngle = 0.2f,
-                            .outerConeAngle = 0.6f});
-    scene.lights.push_back(
-        {.kind = scene::LightKind::Directional, .intensity = {0.1f, 0.2f, 0.3f}, .direction = {0.6f, -0.8f, 0}});
-    expectPixels(reference(scene, small(8, 1), 2, 1), [&](uint32_t x, uint32_t y) {
-        const dvec3 to = dvec3(0, 1, 0) - seenPoint(x, y, 8);
-        const double r = glm::length(to), cosine = to.y / r;
-        const double inner = std::cos(0.2f), outer = std::cos(0.6f);
-        const double s = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
-        return 0.5 / PI * (s * s * cosine / (r * r) + 0.8 * dvec3(0.1f, 0.2f, 0.3f));
-    });
-}
-
-// The form factor of a parallel rectangle, seen from below one of its corners (Siegel and Howell, configuration 4).
-TEST(Reference, RectangleLightHasItsFormFactor)
-{
-    scene::Scene scene = floorSeenFromAbove(scene::diffuse("floor", {0.5f, 0.5f, 0.5f}));
-    const double a = 1.5, b = 0.8, height = 1.25;
-    const uint32_t light = scene::addMaterial(scene, scene::emitter("light", {1, 2, 4}));
-    scene::addQuad(scene, light, {0, 1.25f, 0}, {1.5f, 0, 0}, {0, 0, 0.8f}); // front down
-    const auto corner = [&](double u, double v) { // of the rectangle from (0, 0) to (u, v), odd in both
-        const double x = u / height, y = v / height, X = std::sqrt(1 + x * x), Y = std::sqrt(1 + y * y);
-        return (x / X * std::atan(y / X) + y / Y * std::atan(x / Y)) / (2 * PI);
-    };
-    expectPixels(reference(scene, small(8, 1), 4000, 1), [&](uint32_t x, uint32_t y) {
-        const dvec3 p = seenPoint(x, y, 8);
-        const double factor =
-            corner(a - p.x, b - p.z) - corner(-p.x, b - p.z) - corner(a - p.x, -p.z) + corner(-p.x, -p.z);
-        return 0.5 * factor * dvec3(1, 2, 4);
-    });
-}
-
-TEST(Reference, SkyLightsAFloorWithItsMeanOverTheCosine)
-{
-    scene::Scene scene = floorSeenFromAbove(scene::diffuse("floor", {0.5f, 0.5f, 0.5f}));
-    scene.environment = {
-        2, 4, {{1, 0, 0}, {0, 1, 0}, {0, 0, 3}, {0, 0, 5}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
-    // Each texel fills half the azimuth; the rows end at polar angles 45 and 90 degrees: half of the irradiance each.
-    expectPixels(reference(scene, small(4, 1), 4000, 1),
-                 [](uint32_t, uint32_t) { return 0.5 * dvec3(0.25, 0.25, 0.25 * 8); });
+    scene::Scene scene;
+    scene::addQuad(scene, scene::addMaterial(scene, material), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+    return scene;
 }
 
 struct NamedMaterial {
@@ -139,7 +60,7 @@ void PrintTo(const NamedMaterial& m, std::ostream* os)
 class ReferenceBsdf : public testing::TestWithParam<NamedMaterial>
 {
   protected:
-    ReferenceBsdf() : scene_(floorSeenFromAbove(GetParam().material)) {}
+    ReferenceBsdf() : scene_(floorOf(GetParam().material)) {}
     ReferenceSurface seenFrom(const dvec3& wo) const { return {scene_, {0, 0.3, 0.3}, wo}; }
     static dvec3 direction(double cosine, double phi)
     {
@@ -215,8 +136,7 @@ std::vector<NamedMaterial> materials()
         {"clear", {.baseColor = color, .metallic = 0, .roughness = 0, .transmission = 1, .thin = false}},
     };
 }
-INSTANTIATE_TEST_SUITE_P(Of, ReferenceBsdf, testing::ValuesIn(materials()),
-                         [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Of, ReferenceBsdf, testing::ValuesIn(materials()), [](const auto& i) { return i.param.name; });
 
 } // namespace
 } // namespace support

@@ -1,0 +1,176 @@
+#include "tests/support/closed_forms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/scene/procedural.h"
+#include "engine/scene/shapes.h"
+
+namespace support
+{
+
+namespace
+{
+
+using glm::dvec3;
+
+constexpr double PI = std::numbers::pi;
+const glm::vec3 ALBEDO = {0.5f, 0.4f, 0.3f};
+
+passes::Settings square(uint32_t size, uint32_t maxBounces)
+{
+    passes::Settings settings;
+    settings.width = settings.height = size;
+    settings.maxBounces = maxBounces;
+    return settings;
+}
+
+// The floor y = 0, seen straight from above: the picture's point (x, y) is the floor's point (x, 0, y).
+scene::Scene floorFromAbove()
+{
+    scene::Scene scene;
+    scene::addQuad(scene, scene::addMaterial(scene, scene::diffuse("floor", ALBEDO)), {-2, 0, 2}, {4, 0, 0},
+                   {0, 0, -4});
+    scene::Camera camera;
+    camera.position = {0, 1, 0};
+    camera.right = {1, 0, 0};
+    camera.up = {0, 0, -1};
+    camera.forward = {0, -1, 0};
+    camera.yfov = PI / 2;
+    scene.cameras.push_back(camera);
+    return scene;
+}
+
+ClosedForm pointLight(uint32_t size)
+{
+    scene::Scene scene = floorFromAbove();
+    const dvec3 at(0.25, 0.75, -0.125), intensity(1, 2, 3);
+    scene.lights.push_back({.intensity = intensity, .position = at});
+    return {"PointLight", scene, square(size, 1), [=](double x, double y) {
+                const dvec3 to = at - dvec3(x, 0, y);
+                const double r = glm::length(to);
+                return dvec3(ALBEDO) / PI * intensity * to.y / (r * r * r);
+            }};
+}
+
+ClosedForm spotLight(uint32_t size)
+{
+    scene::Scene scene = floorFromAbove();
+    const float inner = 0.2f, outer = 0.6f;
+    scene.lights.push_back({.kind = scene::LightKind::Spot,
+                            .position = {0, 1, 0},
+                            .direction = {0, -1, 0},
+                            .innerConeAngle = inner,
+                            .outerConeAngle = outer});
+    return {"SpotLight", scene, square(size, 1), [=](double x, double y) {
+                const double r2 = x * x + y * y + 1, cosine = 1 / std::sqrt(r2);
+                const double cosInner = std::cos(double{inner}), cosOuter = std::cos(double{outer});
+                const double s = std::clamp((cosine - cosOuter) / (cosInner - cosOuter), 0.0, 1.0);
+                return dvec3(ALBEDO) / PI * (s * s * cosine / r2);
+            }};
+}
+
+ClosedForm directionalLight(uint32_t size)
+{
+    scene::Scene scene = floorFromAbove();
+    scene.lights.push_back(
+        {.kind = scene::LightKind::Directional, .intensity = {1, 2, 3}, .direction = {0.6f, -0.8f, 0}});
+    return {"DirectionalLight", scene, square(size, 1),
+            [](double, double) { return dvec3(ALBEDO) / PI * 0.8 * dvec3(1, 2, 3); }};
+}
+
+// Four corner configurations make the form factor of any parallel rectangle (Siegel and Howell).
+ClosedForm rectangleLight(uint32_t size)
+{
+    scene::Scene scene = floorFromAbove();
+    const uint32_t light = scene::addMaterial(scene, scene::emitter("light", {1, 2, 4}));
+    scene::addQuad(scene, light, {0, 1.25f, 0}, {1.5f, 0, 0}, {0, 0, 0.75f}); // front down
+    return {"RectangleLight", scene, square(size, 1), [](double x, double y) {
+                const auto corner = [](double u, double v) {
+                    const double a = u / 1.25, b = v / 1.25, A = std::sqrt(1 + a * a), B = std::sqrt(1 + b * b);
+                    return (a / A * std::atan(b / A) + b / B * std::atan(a / B)) / (2 * PI);
+                };
+                const double factor =
+                    corner(1.5 - x, 0.75 - y) - corner(-x, 0.75 - y) - corner(1.5 - x, -y) + corner(-x, -y);
+                return dvec3(ALBEDO) * factor * dvec3(1, 2, 4);
+            }};
+}
+
+// Each texel fills half the azimuth; the rows end at 45 and 90 degrees: half of the floor's irradiance each.
+ClosedForm sky(uint32_t size)
+{
+    scene::Scene scene = floorFromAbove();
+    scene.environment = {
+        2, 4, {{1, 0, 0}, {0, 1, 0}, {0, 0, 3}, {0, 0, 5}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
+    return {"Sky", scene, square(size, 1), [](double, double) { return dvec3(ALBEDO) * dvec3(0.25, 0.25, 2); }};
+}
+
+} // namespace
+
+ClosedForm furnace(uint32_t size, uint32_t maxBounces)
+{
+    return {"Furnace", scene::makeFurnace(), square(size, maxBounces),
+            [=](double, double) { return 1.0 - glm::pow(dvec3(scene::FURNACE_ALBEDO), dvec3(maxBounces + 1.0)); }};
+}
+
+// E = integral over half vectors of D G2 (o.h) / cos o, where the mirrored direction leaves the surface; the variable
+// of h is the cumulative sum of D cos h, so that narrow lobes are as smooth as wide ones.
+double ggxAlbedo(double width, double cosine)
+{
+    constexpr int STEPS = 1000;
+    const auto lambda = [&](double c) { return (std::sqrt(1 + width * width * (1 - c * c) / (c * c)) - 1) / 2; };
+    const double sine = std::sqrt(1 - cosine * cosine);
+    double sum = 0;
+    for (int i = 0; i < STEPS; ++i) {
+        const double u = (i + 0.5) / STEPS;
+        const double cosH = std::sqrt((1 - u) / (1 + (width * width - 1) * u)), sinH = std::sqrt(1 - cosH * cosH);
+        for (int j = 0; j < STEPS; ++j) {
+            const double oh = cosine * cosH + sine * sinH * std::cos(PI * (j + 0.5) / STEPS);
+            const double cosI = 2 * oh * cosH - cosine;
+            if (oh > 0 && cosI > 0) sum += oh / (cosine * cosH * (1 + lambda(cosine) + lambda(cosI)));
+        }
+    }
+    return sum / (double{STEPS} * STEPS);
+}
+
+ClosedForm ggxUnderWhiteSky(uint32_t size, float roughness, double cosine)
+{
+    scene::Scene scene;
+    scene::addQuad(scene, scene::addMaterial(scene, {.metallic = 1, .roughness = roughness}), {-1, 0, 1}, {2, 0, 0},
+                   {0, 0, -2});
+    scene.environment = {1, 1, {glm::vec3(1)}};
+    scene::Camera camera = scene::lookAt("camera", dvec3(0, cosine, std::sqrt(1 - cosine * cosine)), dvec3(0), 45);
+    camera.orthographic = true;
+    camera.ymag = 0.1 * cosine; // the picture is all floor
+    scene.cameras.push_back(camera);
+    const double albedo = ggxAlbedo(double{roughness} * roughness, cosine);
+    return {"GgxUnderWhiteSky", scene, square(size, 1), [=](double, double) { return dvec3(albedo); }};
+}
+
+std::vector<ClosedForm> closedForms(uint32_t size)
+{
+    return {pointLight(size), spotLight(size), directionalLight(size), rectangleLight(size), sky(size)};
+}
+
+PictureEstimates ClosedForm::exactly() const
+{
+    PixelEstimates picture{settings.width, settings.height, {}};
+    for (uint32_t y = 0; y < picture.height; ++y)
+        for (uint32_t x = 0; x < picture.width; ++x) {
+            const dvec3 value = radiance(2 * (x + 0.5) / picture.width - 1, 2 * (y + 0.5) / picture.height - 1);
+            const auto estimate = [](double mean) {
+                return Estimate{mean, 0, std::numeric_limits<double>::infinity()};
+            };
+            picture.pixels.push_back({estimate(value.x), estimate(value.y), estimate(value.z)});
+        }
+    return pictureOf(picture);
+}
+
+void PrintTo(const ClosedForm& form, std::ostream* os)
+{
+    *os << form.name;
+}
+
+} // namespace support
