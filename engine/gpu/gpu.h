@@ -31,7 +31,7 @@ struct Limits {
     uint64_t storageBindingBytes = 0;    // largest storage binding, bytes
     uint64_t tableBytes = 0;             // largest Table, bytes (texel buffer elements x 16, or storageBindingBytes)
     uint64_t uniformBindingBytes = 0;    // bytes
-    uint32_t storageBuffersPerStage = 0; // count
+    uint32_t storageBuffersPerStage = 0; // count, tables apart
     uint32_t workgroupInvocations = 0;   // count
     uint32_t workgroupBytes = 0;         // shared memory, bytes
     uint64_t memoryBytes = 0;            // largest device-local heap, bytes

@@ -82,7 +82,7 @@ vec4 loadVertexColor(uint row, vec2 barycentric)
     vec4 colorA = vec4(unpackHalf2x16(a.x), unpackHalf2x16(a.y));
     vec4 colorB = vec4(unpackHalf2x16(bc.x), unpackHalf2x16(bc.y));
     vec4 colorC = vec4(unpackHalf2x16(bc.z), unpackHalf2x16(bc.w));
-    return (1.0 - barycentric.x - barycentric.y) * colorA + barycentric.x * colorB + barycentric.y * colorC;
+    return colorA + barycentric.x * (colorB - colorA) + barycentric.y * (colorC - colorA); // one color stays exactly that
 }
 
 uint materialRow(uint material) { return scene.materialOffset + (HAS_MANY_MATERIALS ? material * MATERIAL_ROWS : 0u); }

@@ -8,6 +8,8 @@
 
 #include <filesystem>
 
+#include <fmt/core.h>
+
 namespace
 {
 
@@ -70,6 +72,31 @@ TEST_F(ShaderFolder, ACompileErrorSaysFileAndLine)
     EXPECT_THROW(gpu::compileShader(folder_ / "absent.comp", folder_, true), Error);
     write("lost.comp", "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"absent.glsl\"\n");
     EXPECT_THROW(gpu::compileShader(folder_ / "lost.comp", folder_, true), Error);
+}
+
+// Ten storage buffers a stage, as in WebGPU; tables apart.
+TEST_F(ShaderFolder, TooManyStorageBuffersAreAnError)
+{
+    gpu::Device device = openDevice({.shaderDirectory = folder_.string()});
+    fs::copy(fs::path(TRICHROME_SOURCE_DIR) / "shaders/lib", folder_ / "lib");
+    const auto create = [&](int buffers) -> std::string {
+        std::string declarations, sum;
+        for (int i = 0; i < buffers; ++i) {
+            declarations += fmt::format("layout(set = 0, binding = {0}) buffer B{0} {{ uint value{0}; }};\n", i);
+            sum += fmt::format("value{} + ", i);
+        }
+        write("many.comp", "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
+                           "#include \"lib/table.glsl\"\nlayout(local_size_x = 1) in;\nTABLE(1, 0, Elements);\n" +
+                               declarations + "void main() { value0 = " + sum + "FETCH(Elements, 0).x; }\n");
+        try {
+            device.createComputePipeline({.label = "many"});
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(create(10), "");
+    EXPECT_NE(create(11).find("\"many\" declares 11 storage buffers, more than the limit of 10"), std::string::npos);
 }
 
 TEST_F(ShaderFolder, HotReloadRunsTheEditedShader)
