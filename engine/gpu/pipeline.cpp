@@ -22,22 +22,6 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
     const Limits& limits = device.physical.adapter.limits;
     const std::string& deviceName = device.physical.adapter.name;
 
-<<<<<<< HEAD
-    // Ten buffers that shaders write or read as such, wherever the program may go; tables can be textures or texel buffers
-    // elsewhere, and count only where they are storage buffers, against what this device has.
-    const auto count = [&](Binding::Kind kind) {
-        return std::ranges::count_if(shader.bindings, [&](const Binding& b) { return b.kind == kind; });
-    };
-    const auto storage = count(Binding::Kind::Storage);
-    if (storage > limits.storageBuffersPerStage)
-        throw Error("Shader \"{}\" declares {} storage buffers, more than the limit of {}.", label, storage,
-                    limits.storageBuffersPerStage);
-    const auto all = storage + (limits.tablesAreTexelBuffers ? 0 : count(Binding::Kind::Table));
-    const uint32_t most = device.properties.limits.maxPerStageDescriptorStorageBuffers;
-    if (all > most)
-        throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of device \"{}\".", label, all, most,
-                    deviceName);
-=======
     // Tables do not count as storage buffers: in WebGPU, which has no texel buffers, they would be textures. Where they
     // are storage buffers, what this very device allows must hold all.
     const auto count = [&](auto... kinds) {
@@ -53,7 +37,6 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
     if (!limits.tablesAreTexelBuffers && all > most)
         throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of \"{}\".", label, all,
                     most, deviceName);
->>>>>>> main
 
     uint64_t invocations = 1;
     for (uint32_t axis = 0; axis < 3; ++axis) {

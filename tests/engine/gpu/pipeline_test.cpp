@@ -130,13 +130,6 @@ TEST_F(Pipeline, LimitsAreErrorsThatNameTheConstant)
     EXPECT_CONTAINS(create({{"WIDTH", 1024}}), "reduce the constant WIDTH");
     EXPECT_CONTAINS(create({{"WIDTH", 0}}), "0 x 4 x 1");
     EXPECT_CONTAINS(create({{"EXTRA", 5000}}), "bytes of shared memory");
-<<<<<<< HEAD
-    EXPECT_CONTAINS(
-        errorOf(
-            [&] { device().createComputePipeline({.label = "many", .shader = TEST_SPIRV_DIR "/many_buffers_test"}); }),
-        "declares 11 storage buffers, more than the limit of 10");
-=======
->>>>>>> main
 }
 
 TEST_F(Pipeline, BindGroupsListMissingUnknownAndUnfitBuffers)
