@@ -16,12 +16,21 @@ namespace scene
 namespace
 {
 
-uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
+uint32_t bits(float value)
+{
+    return std::bit_cast<uint32_t>(value);
+}
 
-glm::uvec4 row(const glm::vec3& v, uint32_t w) { return {bits(v.x), bits(v.y), bits(v.z), w}; }
+glm::uvec4 row(const glm::vec3& v, uint32_t w)
+{
+    return {bits(v.x), bits(v.y), bits(v.z), w};
+}
 
 // 2^-round(log2(size)): brings `size` near 1 without rounding anything.
-double powerOfTwoScale(double size) { return size > 0 && std::isfinite(size) ? std::exp2(-std::round(std::log2(size))) : 1; }
+double powerOfTwoScale(double size)
+{
+    return size > 0 && std::isfinite(size) ? std::exp2(-std::round(std::log2(size))) : 1;
+}
 
 double radiusOf(const Scene& scene)
 {
@@ -58,7 +67,27 @@ glm::uvec2 encodeColor(const glm::vec4& color)
 
 SceneFeatures everything()
 {
-    return {.alpha = true, .specular = true, .rough = true, .dirac = true, .transmission = true, .solid = true, .emissive = true, .punctual = true, .directional = true, .environment = true, .unlit = true, .vertexColors = true, .secondUv = true, .textureTransform = true, .baseColorTexture = true, .metallicRoughnessTexture = true, .normalMap = true, .emissiveTexture = true, .transmissionTexture = true, .specularTexture = true, .manyMaterials = true};
+    return {.alpha = true,
+            .specular = true,
+            .rough = true,
+            .dirac = true,
+            .transmission = true,
+            .solid = true,
+            .emissive = true,
+            .punctual = true,
+            .directional = true,
+            .environment = true,
+            .unlit = true,
+            .vertexColors = true,
+            .secondUv = true,
+            .textureTransform = true,
+            .baseColorTexture = true,
+            .metallicRoughnessTexture = true,
+            .normalMap = true,
+            .emissiveTexture = true,
+            .transmissionTexture = true,
+            .specularTexture = true,
+            .manyMaterials = true};
 }
 
 uint32_t attributeRows(const SceneFeatures& features)
@@ -85,7 +114,8 @@ std::vector<glm::uvec4> packAttributes(const Scene& scene, const std::vector<glm
         const auto& [a, b, c] = triangle.vertices;
         glm::uvec3 tangents;
         for (int i = 0; i < 3; ++i)
-            tangents[i] = encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
+            tangents[i] =
+                encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
         table.push_back(row(positions[a], triangle.material));
         table.push_back(row(positions[b], lightOfTriangle[t]));
         table.push_back(row(positions[c], 0));
@@ -99,7 +129,9 @@ std::vector<glm::uvec4> packAttributes(const Scene& scene, const std::vector<glm
         table.emplace_back(uv(scene.uv0, a), uv(scene.uv0, b));
         table.emplace_back(uv(scene.uv0, c), glm::uvec2(tangents));
         if (rows == shared::ATTRIBUTE_ROWS_UV) continue;
-        const auto color = [&](uint32_t vertex) { return encodeColor(attributeOr(scene.colors, vertex, glm::vec4(1))); };
+        const auto color = [&](uint32_t vertex) {
+            return encodeColor(attributeOr(scene.colors, vertex, glm::vec4(1)));
+        };
         table.emplace_back(uv(scene.uv1, a), uv(scene.uv1, b));
         table.emplace_back(uv(scene.uv1, c), color(a));
         table.emplace_back(color(b), color(c));
@@ -124,7 +156,8 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     tables.lengthScale = powerOfTwoScale(radius);
 
     std::vector<glm::vec3> positions(scene.positions.size());
-    for (size_t i = 0; i < positions.size(); ++i) positions[i] = glm::vec3(glm::dvec3(scene.positions[i]) * tables.lengthScale);
+    for (size_t i = 0; i < positions.size(); ++i)
+        positions[i] = glm::vec3(glm::dvec3(scene.positions[i]) * tables.lengthScale);
 
     const LightTables lights = makeLightTables(scene, positions, tables.lengthScale, radius * tables.lengthScale);
     tables.radianceScale = lights.radianceScale;

@@ -1,6 +1,6 @@
 #pragma once
-// A Scene as the tables that shaders read: records packed as shaders/shared/scene.h says, lengths and light scaled by powers
-// of two so that the numbers are of order 1 (undone exactly at read-back). Pure CPU work, no device.
+// A Scene as the tables that shaders read: records packed as shaders/shared/scene.h says, lengths and light scaled by
+// powers of two so that the numbers are of order 1 (undone exactly at read-back). Pure CPU work, no device.
 
 #include <array>
 #include <cstdint>
@@ -66,7 +66,8 @@ struct SceneTables {
 };
 
 // Throws Error when a table would exceed `maxTableBytes`.
-SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {},
+SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes,
+                            const std::function<void(double)>& bvhProgress = {},
                             FeatureSet featureSet = FeatureSet::Needed);
 
 } // namespace scene

@@ -228,7 +228,10 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             uint triangle = v0.w & ~BVH_ALPHA_FLAG;
             met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
             if (HAS_ALPHA) {
-                if (met && (v0.w & BVH_ALPHA_FLAG) != 0u) met = alphaPasses(triangle, barycentric, alphaSeed);
+                // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiles one in this loop, and rays miss triangles.
+                bool asks = met && (v0.w & BVH_ALPHA_FLAG) != 0u;
+                bool passes = alphaPasses(asks ? triangle : 0u, barycentric, alphaSeed);
+                met = met && (passes || !asks);
             }
             if (any) {
                 blocked = blocked || met;

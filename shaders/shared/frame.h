@@ -26,9 +26,9 @@ struct FrameUniform {
     uint frame;  // index since the last reset; with the pixel it is the path's seed
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
-    uint slice;          // which half of Surfaces is this frame's: 0 or 1; the other is the previous frame's
-    uint maxConfidence;  // M_c, frames
-    uint neighborCount;  // K
+    uint slice;           // which half of Surfaces is this frame's: 0 or 1; the other is the previous frame's
+    uint maxConfidence;   // M_c, frames
+    uint neighborCount;   // K
     float neighborRadius; // pixels
     uint padding0;
     uint padding1;
@@ -44,7 +44,7 @@ SHARED_CONST uint COUNTER_SHADOW = 2u;
 SHARED_CONST uint COUNTER_REPLAY = 3u;       // rays of replayed paths, to the next vertex or to a light
 SHARED_CONST uint COUNTER_RECONNECTION = 4u; // rays that ask whether two vertices see each other
 SHARED_CONST uint RAY_KINDS = 5u;
-SHARED_CONST uint COUNTER_SHIFT = 5u; // + outcome
+SHARED_CONST uint COUNTER_SHIFT = 5u;        // + outcome
 SHARED_CONST uint SHIFT_DONE = 0u;           // the path exists in the other domain and carries light there
 SHARED_CONST uint SHIFT_ENDED = 1u;          // the replay left the scene, was absorbed or met no light
 SHARED_CONST uint SHIFT_JOINED_EARLIER = 2u; // the replay could reconnect before the path itself does: not invertible

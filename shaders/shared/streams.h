@@ -8,10 +8,10 @@
 SHARED_BEGIN
 
 // Path numbers, of vertex x_k (k >= 1): PATH_STREAM + 2 k (+ 1).
-SHARED_CONST uint STREAM_CAMERA = 0u;     // pixel offset x, y; -; alpha seed of the camera ray
-SHARED_CONST uint STREAM_PATH = 0u;       // k >= 1, so blocks 2.. are free of the camera's
-SHARED_CONST uint PURPOSE_LIGHT = 0u;     // light pick; point on the light (2); alpha seed of the shadow ray
-SHARED_CONST uint PURPOSE_SCATTER = 1u;   // lobe; direction (2); alpha seed of the scattered ray
+SHARED_CONST uint STREAM_CAMERA = 0u;   // pixel offset x, y; -; alpha seed of the camera ray
+SHARED_CONST uint STREAM_PATH = 0u;     // k >= 1, so blocks 2.. are free of the camera's
+SHARED_CONST uint PURPOSE_LIGHT = 0u;   // light pick; point on the light (2); alpha seed of the shadow ray
+SHARED_CONST uint PURPOSE_SCATTER = 1u; // lobe; direction (2); alpha seed of the scattered ray
 // Selection numbers, keyed by the pixel and frame that select, never by a stored seed.
 SHARED_CONST uint STREAM_CANONICAL = 0x10000u; // + leaf
 SHARED_CONST uint STREAM_TEMPORAL = 0x20000u;

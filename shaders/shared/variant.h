@@ -34,7 +34,6 @@
     X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")                                 \
     X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")
 
-
 SHARED_BEGIN
 
 // Values of SHIFT_MAP.

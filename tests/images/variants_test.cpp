@@ -25,7 +25,8 @@ class Variants : public GpuTest
     }
 };
 
-// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs: some last bits do.
+// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs, and with it last
+// bits; where such a bit decides (does this ray just miss an edge?) a pixel differs by a whole path: few may.
 TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
 {
     const std::set<std::string> chosen = {"Lambert",   "FrostedGlass", "Textures",      "NormalMap",
@@ -36,10 +37,12 @@ TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
         ++rendered;
         const image::Image needed = render(test, scene::FeatureSet::Needed);
         const image::Image everything = render(test, scene::FeatureSet::Everything);
-        for (size_t i = 0; i < needed.pixels.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(needed.pixels[i][c], everything.pixels[i][c], 4e-6f * needed.pixels[i][c])
-                    << test.name << ", pixel " << i;
+        size_t different = 0;
+        for (size_t i = 0; i < needed.pixels.size(); ++i) {
+            const glm::vec3 difference = glm::abs(needed.pixels[i] - everything.pixels[i]);
+            different += glm::any(glm::greaterThan(difference, 4e-6f * needed.pixels[i]));
+        }
+        EXPECT_LE(different, needed.pixels.size() / 500) << test.name;
     }
     EXPECT_EQ(rendered, chosen.size());
 }

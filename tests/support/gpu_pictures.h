@@ -12,8 +12,7 @@ namespace support
 // `frames` frames of one renderer, each taken for an independent run: of the path tracer they are.
 // A value that is not finite fails the test.
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                              uint32_t frames,
-                              scene::FeatureSet features = scene::FeatureSet::Needed);
+                              uint32_t frames, scene::FeatureSet features = scene::FeatureSet::Needed);
 
 // `runs` renderers with seeds of their own, each read after settings.frames frames (their mean, or with
 // !settings.average the last): for methods whose frames depend on each other.
