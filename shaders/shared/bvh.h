@@ -1,6 +1,6 @@
-// The 8-wide compressed BVH as both languages see it. Built by engine/scene/bvh.cpp, read by shaders/scene/intersect.glsl.
-// After Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017, with
-// masks instead of per-child meta bytes.
+// The 8-wide compressed BVH as both languages see it. Built by engine/scene/bvh.cpp, read by
+// shaders/scene/intersect.glsl. After Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through
+// Compressed Wide BVHs", 2017, with masks instead of per-child meta bytes.
 //
 // Table "Nodes", BVH_NODE_STRIDE elements a node. Child slot s (0..7) lies towards the corner of its node that has
 // x, y, z high where bits 0, 1, 2 of s are set.
@@ -14,8 +14,8 @@
 //   4: upper y; upper z
 // Node 0 is the root, its grid covers the scene. Children of other nodes fill the gaps that b + s leaves.
 //
-// Table "Triangles", BVH_TRIANGLE_STRIDE elements a record: xyz of element i is vertex i (float bits); w of element 0 is the
-// triangle's index, with BVH_ALPHA_FLAG where its alpha must be asked.
+// Table "Triangles", BVH_TRIANGLE_STRIDE elements a record: xyz of element i is vertex i (float bits); w of element 0
+// is the triangle's index, with BVH_ALPHA_FLAG where its alpha must be asked.
 #ifndef SHADERS_SHARED_BVH_H
 #define SHADERS_SHARED_BVH_H
 
@@ -25,7 +25,7 @@ SHARED_BEGIN
 SHARED_CONST uint BVH_NODE_STRIDE = 5u;
 SHARED_CONST uint BVH_TRIANGLE_STRIDE = 3u;
 SHARED_CONST uint BVH_MAX_NODES = 1u << 24; // b << 8 must not overflow
-SHARED_CONST uint BVH_STACK_SIZE = 32u; // entries; the builder keeps every tree within it
+SHARED_CONST uint BVH_STACK_SIZE = 32u;     // entries; the builder keeps every tree within it
 SHARED_CONST uint BVH_ALPHA_FLAG = 0x80000000u;
 SHARED_END
 

@@ -1,5 +1,6 @@
 #include "tests/support/shared_files.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -27,4 +28,14 @@ std::vector<MalformedFile> malformedFiles()
                          .why = entry.at("why")});
     }
     return files;
+}
+
+std::vector<std::filesystem::path> sharedModels(const std::string& folder)
+{
+    std::vector<std::filesystem::path> models;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(sharedPath(folder))) {
+        if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") models.push_back(entry.path());
+    }
+    std::sort(models.begin(), models.end());
+    return models;
 }

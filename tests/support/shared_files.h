@@ -21,3 +21,6 @@ struct MalformedFile {
     std::string why;
 };
 std::vector<MalformedFile> malformedFiles();
+
+// All .gltf and .glb files below a folder there, sorted.
+std::vector<std::filesystem::path> sharedModels(const std::string& folder);
