@@ -25,7 +25,8 @@ class Variants : public GpuTest
     }
 };
 
-// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs: some last bits do.
+// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs: some last bits do,
+// and now and then one of them turns a decision (does this ray pass that edge?).
 TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
 {
     const std::set<std::string> chosen = {"Lambert",   "FrostedGlass", "Textures",      "NormalMap",
@@ -36,10 +37,10 @@ TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
         ++rendered;
         const image::Image needed = render(test, passes::Renderer::Features::Needed);
         const image::Image everything = render(test, passes::Renderer::Features::Everything);
+        size_t different = 0;
         for (size_t i = 0; i < needed.pixels.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(needed.pixels[i][c], everything.pixels[i][c], 4e-6f * needed.pixels[i][c])
-                    << test.name << ", pixel " << i;
+            different += glm::distance(needed.pixels[i], everything.pixels[i]) > 4e-6f * glm::length(needed.pixels[i]);
+        EXPECT_LE(different, 3u) << test.name;
     }
     EXPECT_EQ(rendered, chosen.size());
 }
