@@ -7,13 +7,10 @@
 // least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
 // ray's signs. SwiftShader, which reads tables from storage buffers, compiles a nest of such loops wrongly: there the
 // inner one tests at its start (tests/bench/LOG.md).
-#ifdef TABLES_IN_STORAGE
+// lavapipe compiles it wrongly too once alpha is asked in it among all features (tests/images/variants_test.cpp), so it
+// does everywhere.
 #define LOOP_BEGIN(CONDITION) while (CONDITION) {
 #define LOOP_END(CONDITION) }
-#else
-#define LOOP_BEGIN(CONDITION) do {
-#define LOOP_END(CONDITION) } while (CONDITION);
-#endif
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
