@@ -52,7 +52,7 @@ vec3 sampleEnvironment(uint pickBits, uint aliasBits, vec2 u)
     float bottom = cos(PI * float(y + 1u) / float(scene.environmentHeight));
     float c = mix(top, bottom, u.y);
     float s = sqrt(max(1.0 - c * c, 0.0));
-    return vec3(s * cos(phi), c, s * sin(phi));
+    return normalize(vec3(s * cos(phi), c, s * sin(phi))); // drivers' sin and cos are off by up to 2^-11
 }
 
 // --------------------------------------------------------------------------------------------------------------- all lights

@@ -25,8 +25,8 @@ class Variants : public GpuTest
     }
 };
 
-// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs, and with it last
-// bits; where such a bit decides (does this ray just miss an edge?) a pixel differs by a whole path: few may.
+// Of each layout of the tables, and of each kind of light. What the compiler may reorder differs: some last bits do,
+// and now and then one of them turns a decision (does this ray pass that edge?).
 TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
 {
     const std::set<std::string> chosen = {"Lambert",   "FrostedGlass", "Textures",      "NormalMap",
@@ -38,11 +38,9 @@ TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
         const image::Image needed = render(test, scene::FeatureSet::Needed);
         const image::Image everything = render(test, scene::FeatureSet::Everything);
         size_t different = 0;
-        for (size_t i = 0; i < needed.pixels.size(); ++i) {
-            const glm::vec3 difference = glm::abs(needed.pixels[i] - everything.pixels[i]);
-            different += glm::any(glm::greaterThan(difference, 4e-6f * needed.pixels[i]));
-        }
-        EXPECT_LE(different, needed.pixels.size() / 500) << test.name;
+        for (size_t i = 0; i < needed.pixels.size(); ++i)
+            different += glm::distance(needed.pixels[i], everything.pixels[i]) > 4e-6f * glm::length(needed.pixels[i]);
+        EXPECT_LE(different, 3u) << test.name;
     }
     EXPECT_EQ(rendered, chosen.size());
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/test_scenes.h"
@@ -15,6 +16,13 @@ using Pixels = std::vector<glm::vec3>;
 class RendererTest : public GpuTest
 {
   protected:
+    void SetUp() override
+    {
+        GpuTest::SetUp();
+        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
+            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
+    }
+
     static support::TestScene sceneNamed(const std::string& name)
     {
         for (const support::TestScene& test : support::testScenes())
