@@ -7,10 +7,13 @@
 // least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
 // ray's signs. SwiftShader, which reads tables from storage buffers, compiles a nest of such loops wrongly: there the
 // inner one tests at its start (tests/bench/LOG.md).
-// lavapipe compiles it wrongly too once alpha is asked in it among all features (tests/images/variants_test.cpp), so it
-// does everywhere.
+#ifdef TABLES_IN_STORAGE
 #define LOOP_BEGIN(CONDITION) while (CONDITION) {
 #define LOOP_END(CONDITION) }
+#else
+#define LOOP_BEGIN(CONDITION) do {
+#define LOOP_END(CONDITION) } while (CONDITION);
+#endif
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
@@ -225,7 +228,11 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             uint triangle = v0.w & ~BVH_ALPHA_FLAG;
             met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
             if (HAS_ALPHA) {
-                if (met && (v0.w & BVH_ALPHA_FLAG) != 0u) met = alphaPasses(triangle, barycentric, alphaSeed);
+                // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiles one here, and rays miss triangles
+                // (tests/images/variants_test.cpp).
+                bool asks = met && (v0.w & BVH_ALPHA_FLAG) != 0u;
+                bool passes = alphaPasses(asks ? triangle : 0u, barycentric, alphaSeed);
+                met = met && (passes || !asks);
             }
             if (any) {
                 blocked = blocked || met;

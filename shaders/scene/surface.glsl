@@ -60,13 +60,13 @@ Coordinates loadCoordinates(uint row, vec2 barycentric)
 {
     Coordinates c = Coordinates(vec2(0.0), vec2(0.0), uvec2(0u));
     vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
-    if (HAS_TEXTURES && scene.attributeRows >= ATTRIBUTE_ROWS_UV) {
+    if (HAS_TEXTURES) {
         vec4 ab = uintBitsToFloat(FETCH(Attributes, row + 4u));
         uvec4 last = FETCH(Attributes, row + 5u);
         c.uv0 = weights.x * ab.xy + weights.y * ab.zw + weights.z * uintBitsToFloat(last.xy);
         c.tangents = last.zw;
     }
-    if (HAS_TEXTURES && HAS_SECOND_UV && scene.attributeRows >= ATTRIBUTE_ROWS_FULL) {
+    if (HAS_TEXTURES && HAS_SECOND_UV) {
         vec4 ab = uintBitsToFloat(FETCH(Attributes, row + 6u));
         vec2 uvC = uintBitsToFloat(FETCH(Attributes, row + 7u).xy);
         c.uv1 = weights.x * ab.xy + weights.y * ab.zw + weights.z * uvC;
@@ -76,7 +76,7 @@ Coordinates loadCoordinates(uint row, vec2 barycentric)
 
 vec4 loadVertexColor(uint row, vec2 barycentric)
 {
-    if (!HAS_VERTEX_COLORS || scene.attributeRows < ATTRIBUTE_ROWS_FULL) return vec4(1.0);
+    if (!HAS_VERTEX_COLORS) return vec4(1.0);
     uvec2 a = FETCH(Attributes, row + 7u).zw;
     uvec4 bc = FETCH(Attributes, row + 8u);
     vec4 colorA = vec4(unpackHalf2x16(a.x), unpackHalf2x16(a.y));
