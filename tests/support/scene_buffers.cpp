@@ -6,7 +6,8 @@ namespace support
 {
 
 SceneBuffers::SceneBuffers(gpu::Device& device, const scene::Scene& scene)
-    : tables_(scene::makeSceneTables(scene, device.limits().tableBytes))
+    // Kernels run with the default constants: everything compiled in.
+    : tables_(scene::makeSceneTables(scene, device.limits().tableBytes, {}, scene::FeatureSet::Everything))
 {
     const auto add = [&](const char* name, std::span<const std::byte> bytes, gpu::Usage usage) {
         gpu::Buffer buffer = device.createBuffer({.label = name, .size = bytes.size(), .usage = usage});
