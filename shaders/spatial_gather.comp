@@ -25,7 +25,7 @@ void main()
     uint pixel = at.y * frame.width + at.x;
 
     Reservoir r[MAX_RESERVOIRS];
-    loadReservoirs(pixel, r);
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) r[c] = loadReservoirsHead(pixel, c);
     float confidence = float(loadReservoirsConfidence(pixel)); // c_i
     float neighborConfidence = 0.0;                            // M_n
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
@@ -35,10 +35,12 @@ void main()
     // Pairwise MIS in complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j is the part of the own sample's
     // MIS weight that neighbor j takes. Equal domains change nothing, to the last bit, and what rounding takes is carried on.
     Reservoir merged[MAX_RESERVOIRS];
+    uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
     precise float change[MAX_RESERVOIRS];
     float kept[MAX_RESERVOIRS]; // MIS weight of the own sample
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         merged[c] = EMPTY;
+        lender[c] = pixel;
         change[c] = r[c].carry;
         kept[c] = 1.0;
     }
@@ -48,7 +50,7 @@ void main()
         float part = float(loadReservoirsConfidence(neighbor)) / (confidence + neighborConfidence); // c_j / M
         float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + slot).x);                    // one for all reservoirs
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            Reservoir other = loadReservoirsOne(neighbor, c);
+            Reservoir other = loadReservoirsHead(neighbor, c);
             vec4 words = shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel];
             float a = ratio(targetOf(c, words.xyz), targetOf(c, other.f));
             precise float weight = (other.weightSum + other.carry) * part * (neighborConfidence / confidence) *
@@ -59,6 +61,7 @@ void main()
             if (!consider(merged[c], weight, u)) continue;
             merged[c].chosen = other.chosen;
             merged[c].f = words.xyz;
+            lender[c] = neighbor;
         }
     }
     float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + frame.neighborCount).x);
@@ -67,7 +70,10 @@ void main()
         if (merged[c].weightSum > 0.0 && !consider(merged[c], r[c].weightSum * kept[c], u)) {
             r[c].chosen = merged[c].chosen;
             r[c].f = merged[c].f;
+        } else {
+            lender[c] = pixel;
         }
+        r[c].chosen.reconnection = loadReservoirsPath(lender[c], c);
         precise float total = r[c].weightSum + change[c];
         precise float carry = change[c] - (total - r[c].weightSum);
         r[c].weightSum = total;
