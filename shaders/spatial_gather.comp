@@ -18,6 +18,22 @@ layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
 LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
 STORE_RESERVOIRS(History, history, historyPaths)
 
+// How often do the reservoirs of a pixel agree? What they share is shifted once.
+void countTrees(Reservoir r[MAX_RESERVOIRS])
+{
+    if (RESERVOIR_COUNT == 1u) return;
+    bool held = true;
+    uint trees = 0u;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        held = held && r[c].weightSum > 0.0;
+        bool isNew = true;
+        for (uint before = 0u; before < c; ++before) isNew = isNew && r[before].chosen.seed != r[c].chosen.seed;
+        trees += isNew ? 1u : 0u;
+    }
+    addToCounter(COUNTER_HELD, held ? 1u : 0u);
+    addToCounter(COUNTER_TREES, held ? trees : 0u);
+}
+
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -80,6 +96,7 @@ void main()
         r[c].carry = carry;
         sum += resolved(c, r[c]);
     }
+    countTrees(r);
     storeHistory(pixel, r);
     storeHistoryConfidence(pixel, uint(confidence + neighborConfidence));
     color[pixel] = vec4(finiteOrCounted(sum, STAGE), 0.0);
