@@ -15,8 +15,8 @@ namespace support
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                               uint32_t frames, scene::FeatureSet features = scene::FeatureSet::Needed);
 
-// `runs` runs with seeds of their own, each read after settings.frames frames (their mean, or with !settings.average the
-// last): for methods whose frames depend on each other. The camera moves when `cameraAt` is given.
+// `runs` runs with seeds of their own, each read after settings.frames frames (their mean, or with !settings.average
+// the last): for methods whose frames depend on each other. The camera moves when `cameraAt` is given.
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                             uint32_t runs, const passes::CameraAt& cameraAt = {});
 
