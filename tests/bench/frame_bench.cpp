@@ -31,6 +31,7 @@ struct Options {
     double orbit = 0.3; // degrees a frame; 0: the camera rests
     uint32_t rounds = 5;
     uint32_t frames = 8;
+    uint32_t reference = 0; // frames of the path traced picture that errors are measured against; 0: no errors
     std::string json;
 };
 
@@ -47,7 +48,15 @@ struct Case {
     std::unique_ptr<passes::Renderer> renderer;
     std::map<std::string, std::vector<double>> milliseconds; // by stage, of every round
     passes::RenderStats stats;                               // of the last round
+    std::vector<double> errors;                              // relative MSE of the last frame, of every round
 };
+
+double mean(const std::vector<double>& values)
+{
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / double(values.size());
+}
 
 double median(std::vector<double> values)
 {
@@ -56,8 +65,39 @@ double median(std::vector<double> values)
     return *middle;
 }
 
-void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options, bool counts)
+// Mean over pixels and channels of (a - r)^2 / (r^2 + 1e-4 m^2), m the mean of r: pixels count alike, black ones
+// finitely.
+double relativeError(const image::Image& picture, const image::Image& reference)
 {
+    double mean = 0, sum = 0;
+    for (const glm::vec3& r : reference.pixels) mean += double(r.r) + r.g + r.b;
+    mean /= 3 * double(reference.pixels.size());
+    for (size_t p = 0; p < reference.pixels.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const double r = reference.pixels[p][c], difference = picture.pixels[p][c] - r;
+            sum += difference * difference / (r * r + 1e-4 * mean * mean);
+        }
+    return sum / (3 * double(reference.pixels.size()));
+}
+
+image::Image tracedReference(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
+                             const Options& options)
+{
+    passes::Settings settings;
+    passes::set(settings, "size", options.size);
+    settings.seed = 1u << 30;
+    passes::Renderer renderer(device, scene, settings);
+    renderer.setCamera(camera);
+    for (uint32_t frame = 0; frame < options.reference; ++frame) renderer.renderFrame();
+    return renderer.readMean();
+}
+
+void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options, const image::Image& reference,
+              uint32_t round)
+{
+    passes::Settings settings = c.renderer->settings();
+    settings.seed = round;
+    c.renderer->apply(settings);
     c.renderer->setCamera(cameraAt(0));
     c.renderer->reset();
     for (uint32_t frame = 0; frame < options.frames; ++frame) {
@@ -65,7 +105,8 @@ void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options,
         c.renderer->renderFrame();
     }
     c.stats = c.renderer->stats();
-    if (!counts) return; // drivers compile at the first dispatch
+    if (round == 0) return; // drivers compile at the first dispatch
+    if (options.reference > 0) c.errors.push_back(relativeError(c.renderer->readFrame(), reference));
     for (const auto& [stage, ms] : c.stats.stageMilliseconds) c.milliseconds[stage].push_back(ms);
 }
 
@@ -102,6 +143,13 @@ nlohmann::ordered_json report(const std::string& scene, const std::vector<Case>&
             ratio = fmt::format(", {:.2f} of restir-pt, {:.2f} trees/pixel", total / baseline.at(c.shift),
                                 c.stats.treesPerPixel);
         }
+        if (!c.errors.empty()) {
+            // The path tracer's mean over as many frames as fit into this case's time.
+            const double error = mean(c.errors), inTime = mean(cases.front().errors) * pt / total;
+            row["relmse"] = error;
+            row["relmse_pt_same_time"] = inTime;
+            ratio += fmt::format("; relative MSE {:.4g}, pt in that time {:.4g}", error, inTime);
+        }
         fmt::print("  {:<10} {:<12} {:8.1f} ms, {:5.2f} of pt, {:5.1f} rays/pixel{}; ms:{}\n", c.method, c.shift, total,
                    total / pt, perPixel, ratio, stages);
         rows.push_back(std::move(row));
@@ -132,8 +180,10 @@ void run(const Options& options)
         add("pt", "replay");
         for (const char* shift : {"replay", "reconnection", "hybrid"})
             for (const char* method : {"restir-pt", "rgb-restir"}) add(method, shift);
+        image::Image reference;
+        if (options.reference > 0) reference = tracedReference(device, scene, cameraAt(options.frames - 1), options);
         for (uint32_t round = 0; round <= options.rounds; ++round)
-            for (Case& c : cases) runRound(c, cameraAt, options, round > 0);
+            for (Case& c : cases) runRound(c, cameraAt, options, reference, round);
         for (auto& row : report(name, cases, options)) rows.push_back(row);
     }
     if (options.json.empty()) return;
@@ -154,6 +204,8 @@ int main(int count, char** arguments)
     app.add_option("--orbit", options.orbit, "degrees per frame; 0: the camera rests");
     app.add_option("--rounds", options.rounds, "rounds that count")->check(CLI::PositiveNumber);
     app.add_option("--frames", options.frames, "frames of a round")->check(CLI::PositiveNumber);
+    app.add_option("--reference", options.reference,
+                   "also errors of the last frame, against this many path traced frames");
     app.add_option("--json", options.json, "also write the figures here");
     CLI11_PARSE(app, count, arguments);
     try {
