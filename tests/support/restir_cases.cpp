@@ -100,8 +100,8 @@ std::vector<RestirCase> restirCases()
         {"SunnySky", RestirPt, Replay, Both, true, 8},
         {"TwoSidedLamp", RgbRestir, Hybrid, Both, true, 8},
         {"ManyLamps", RgbRestir, Hybrid, Both, true, 4096},
-        {"Room", RgbRestir, Hybrid, Both, true, 64},
-        {"Room", RestirPt, Replay, Both, true, 8},
+        {"Room", RgbRestir, Hybrid, Both, true, 64, 450},
+        {"Room", RestirPt, Replay, Both, true, 8, 450},
         {"Room", GroupedRestir, Reconnection, Temporal, false, 8},
         {"Orthographic", RgbRestir, Hybrid, Both, true, 8},
     };
