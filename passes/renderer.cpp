@@ -300,6 +300,8 @@ RenderStats Renderer::stats()
         stats.shifts[SHIFT_NAMES[i]] = counter(shared::COUNTER_SHIFT + i);
     for (size_t i = 0; i < std::size(STAGE_NAMES); ++i)
         stats.nonFinite[STAGE_NAMES[i]] = counter(shared::COUNTER_NONFINITE + i);
+    const uint64_t held = counter(shared::COUNTER_HELD);
+    stats.treesPerPixel = held > 0 ? double(counter(shared::COUNTER_TREES)) / double(held) : 0;
     stats.memoryBytes = device_.allocatedBytes();
     return stats;
 }

@@ -22,8 +22,10 @@ namespace passes
 // Counters and times so far.
 struct RenderStats {
     std::map<std::string, double> stageMilliseconds; // device time per frame, by stage
-    std::map<std::string, uint64_t> rays;      // since the last reset: primary, bounce, shadow, replay, reconnection
-    std::map<std::string, uint64_t> shifts;    // by outcome, since the last reset
+    std::map<std::string, uint64_t> rays;   // since the last reset: primary, bounce, shadow, replay, reconnection
+    std::map<std::string, uint64_t> shifts; // by outcome, since the last reset
+    double treesPerPixel =
+        0; // path trees among the reservoirs of a pixel that all hold a sample: 1 when all agree; 0: one reservoir
     std::map<std::string, uint64_t> nonFinite; // values found not finite (and counted as 0), by stage
     double tablesSeconds = 0;                  // scene -> tables, without the BVH
     double bvhSeconds = 0;

@@ -18,6 +18,22 @@ layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
 LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
 STORE_RESERVOIRS(History, history, historyPaths)
 
+// How often do the reservoirs of a pixel agree? What they share is shifted once.
+void countTrees(Reservoir r[MAX_RESERVOIRS])
+{
+    if (RESERVOIR_COUNT == 1u) return;
+    bool held = true;
+    uint trees = 0u;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        held = held && r[c].weightSum > 0.0;
+        bool isNew = true;
+        for (uint before = 0u; before < c; ++before) isNew = isNew && r[before].chosen.seed != r[c].chosen.seed;
+        trees += isNew ? 1u : 0u;
+    }
+    addToCounter(COUNTER_HELD, held ? 1u : 0u);
+    addToCounter(COUNTER_TREES, held ? trees : 0u);
+}
+
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -25,7 +41,7 @@ void main()
     uint pixel = at.y * frame.width + at.x;
 
     Reservoir r[MAX_RESERVOIRS];
-    loadReservoirs(pixel, r);
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) r[c] = loadReservoirsHead(pixel, c);
     float confidence = float(loadReservoirsConfidence(pixel)); // c_i
     float neighborConfidence = 0.0;                            // M_n
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
@@ -35,10 +51,12 @@ void main()
     // Pairwise MIS in complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j is the part of the own sample's
     // MIS weight that neighbor j takes. Equal domains change nothing, to the last bit, and what rounding takes is carried on.
     Reservoir merged[MAX_RESERVOIRS];
+    uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
     precise float change[MAX_RESERVOIRS];
     float kept[MAX_RESERVOIRS]; // MIS weight of the own sample
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         merged[c] = EMPTY;
+        lender[c] = pixel;
         change[c] = r[c].carry;
         kept[c] = 1.0;
     }
@@ -48,7 +66,7 @@ void main()
         float part = float(loadReservoirsConfidence(neighbor)) / (confidence + neighborConfidence); // c_j / M
         float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + slot).x);                    // one for all reservoirs
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            Reservoir other = loadReservoirsOne(neighbor, c);
+            Reservoir other = loadReservoirsHead(neighbor, c);
             vec4 words = shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel];
             float a = ratio(targetOf(c, words.xyz), targetOf(c, other.f));
             precise float weight = (other.weightSum + other.carry) * part * (neighborConfidence / confidence) *
@@ -59,6 +77,7 @@ void main()
             if (!consider(merged[c], weight, u)) continue;
             merged[c].chosen = other.chosen;
             merged[c].f = words.xyz;
+            lender[c] = neighbor;
         }
     }
     float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + frame.neighborCount).x);
@@ -67,13 +86,17 @@ void main()
         if (merged[c].weightSum > 0.0 && !consider(merged[c], r[c].weightSum * kept[c], u)) {
             r[c].chosen = merged[c].chosen;
             r[c].f = merged[c].f;
+        } else {
+            lender[c] = pixel;
         }
+        r[c].chosen.reconnection = loadReservoirsPath(lender[c], c);
         precise float total = r[c].weightSum + change[c];
         precise float carry = change[c] - (total - r[c].weightSum);
         r[c].weightSum = total;
         r[c].carry = carry;
         sum += resolved(c, r[c]);
     }
+    countTrees(r);
     storeHistory(pixel, r);
     storeHistoryConfidence(pixel, uint(confidence + neighborConfidence));
     color[pixel] = vec4(finiteOrCounted(sum, STAGE), 0.0);

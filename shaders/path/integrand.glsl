@@ -106,29 +106,19 @@ void emit(uint leaf, vec3 f, Ending e)
     }
 }
 
-// f(T Y) of a path of the group that is joined from x = x_(r-1) to x_r on `at`, as evaluated by `f` with density `pdf`.
-vec3 joined(PathSample y, Vertex x, vec3 f, float pdf, Surface at, vec3 direction, float geometry)
+// What follows x_r when it scatters on, of path y: the last factors of f(T Y). `at` is the scattering at x_r.
+vec3 afterJoint(PathSample y, Bsdf at)
 {
     Reconnection r = y.reconnection;
-    vec3 prefix = x.throughput * f * geometry;
-    if (scatteringsOf(y.leaf) == x.k) { // x_r is the light
-        vec4 environment = loadEnvironment(direction);
-        bool infinite = r.triangle == NO_HIT;
-        vec3 radiance = infinite ? environment.rgb : at.emission;
-        float lightDensity = infinite ? environmentPdf(environment) : lightPdf(at, x.s.position, -direction);
-        return radiance == vec3(0.0) ? vec3(0.0) : prefix * radiance * (pdf / (pdf + lightDensity));
-    }
-    Bsdf bsdf = makeBsdf(at, -direction);
-    if (absorbs(bsdf)) return vec3(0.0);
     float departure;
-    vec3 onward = evaluate(bsdf, r.direction * bsdf.frame, r.direction, departure);
-    if (onward == vec3(0.0)) return vec3(0.0);
+    vec3 f = evaluate(at, r.direction * at.frame, r.direction, departure);
+    if (f == vec3(0.0)) return vec3(0.0);
     float weight = 1.0; // what is left of the MIS weight and depends on x_(r-1)
     if (scatteringsOf(y.leaf) == y.joint) {
         if ((y.leaf & 1u) == BY_SCATTER) weight = departure / (departure + r.lightPdf);
         else if (r.lightPdf >= 0.0) weight = 1.0 / (r.lightPdf + departure);
     }
-    return prefix * onward * r.suffix * weight;
+    return f * r.suffix * weight;
 }
 
 // Joins x = x_(r-1) to the reconnection vertices of all paths of the group that reconnect next.
@@ -161,12 +151,23 @@ void join(Vertex x)
             isHidden = infinite ? hiddenAtInfinity(x.s, direction, alphaSeed)
                                 : hidden(x.s, at.position, at.geometricNormal, direction, alphaSeed);
         }
+        // x_r as a light, and as a surface that scatters on: the same for all paths, evaluated once.
+        vec4 environment = loadEnvironment(direction);
+        vec3 radiance = infinite ? environment.rgb : at.emission;
+        float lightDensity = infinite ? environmentPdf(environment) : lightPdf(at, x.s.position, -direction);
+        vec3 asLight = radiance == vec3(0.0) || !scatters ? vec3(0.0) : radiance * (pdf / (pdf + lightDensity));
+        Bsdf onward = makeBsdf(at, -direction);
+        bool endsHere = absorbs(onward);
+        bool lightJoins = joinsLight(x.k + 1u, x.s, distance);
+        bool surfaceJoins = joins(x.k + 1u, x.s, at, distance);
+        vec3 prefix = x.throughput * f * geometry;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if ((joining & (1u << c)) == 0u) continue;
             bool toLight = scatteringsOf(moving[c].leaf) == x.k;
-            bool joinable = toLight ? joinsLight(x.k + 1u, x.s, distance) : joins(x.k + 1u, x.s, at, distance);
+            bool joinable = toLight ? lightJoins : surfaceJoins;
             vec3 moved = vec3(0.0);
-            if (joinable && scatters && !isHidden) moved = joined(moving[c], x, f, pdf, at, direction, geometry);
+            if (joinable && scatters && !isHidden && (toLight || !endsHere))
+                moved = prefix * (toLight ? asLight : afterJoint(moving[c], onward));
             settle(c, !joinable ? SHIFT_NOT_JOINABLE : isHidden ? SHIFT_HIDDEN : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
         }
     }

@@ -14,11 +14,12 @@ uint wordRow(uint pixel, uint c, uint row) { return (WORD_ROWS * c + row) * pixe
 uint pathRow(uint pixel, uint c, uint row) { return (PATH_ROWS * c + row) * pixelCount() + pixel; }
 uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount() + (pixel >> 2u); }
 
-// LOAD_RESERVOIRS defines void load<SET>(uint pixel, out Reservoir r[MAX_RESERVOIRS]) and uint load<SET>Confidence(uint pixel)
-// over the buffers WORDS and PATHS; STORE_RESERVOIRS the same with store. Arrays have MAX_RESERVOIRS elements, of which
-// RESERVOIR_COUNT are used: glslang 12 can neither copy nor initialize arrays sized by a specialisation constant.
+// LOAD_RESERVOIRS defines, over the buffers WORDS and PATHS: load<SET>Head and load<SET>Path, one reservoir without and its
+// path; load<SET>, all of a pixel's; load<SET>Confidence. STORE_RESERVOIRS: store<SET> and store<SET>Confidence. Arrays have
+// MAX_RESERVOIRS elements, of which RESERVOIR_COUNT are used: glslang 12 can neither copy nor initialize arrays sized by a
+// specialisation constant.
 #define LOAD_RESERVOIRS(SET, WORDS, PATHS)                                                                             \
-    Reservoir load##SET##One(uint pixel, uint c)                                                                       \
+    Reservoir load##SET##Head(uint pixel, uint c)                                                                      \
     {                                                                                                                  \
         Reservoir r = EMPTY;                                                                                           \
         uvec4 a = WORDS[wordRow(pixel, c, 0u)];                                                                        \
@@ -29,18 +30,22 @@ uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount
         r.weightSum = uintBitsToFloat(a.w);                                                                            \
         r.f = uintBitsToFloat(b.xyz);                                                                                  \
         r.carry = uintBitsToFloat(b.w);                                                                                \
-        if (SHIFT_MAP != SHIFT_REPLAY) {                                                                               \
-            uvec4 vertex = PATHS[pathRow(pixel, c, 0u)];                                                               \
-            uvec4 suffix = PATHS[pathRow(pixel, c, 1u)];                                                               \
-            r.chosen.reconnection =                                                                                    \
-                Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w),                          \
-                             uintBitsToFloat(PATHS[pathRow(pixel, c, 2u)].xyz), uintBitsToFloat(suffix.xyz));          \
-        }                                                                                                              \
         return r;                                                                                                      \
+    }                                                                                                                  \
+    Reconnection load##SET##Path(uint pixel, uint c)                                                                   \
+    {                                                                                                                  \
+        if (SHIFT_MAP == SHIFT_REPLAY) return NO_SAMPLE.reconnection;                                                  \
+        uvec4 vertex = PATHS[pathRow(pixel, c, 0u)];                                                                   \
+        return Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w),                           \
+                            uintBitsToFloat(PATHS[pathRow(pixel, c, 2u)].xyz),                                         \
+                            uintBitsToFloat(PATHS[pathRow(pixel, c, 1u)].xyz));                                        \
     }                                                                                                                  \
     void load##SET(uint pixel, out Reservoir r[MAX_RESERVOIRS])                                                        \
     {                                                                                                                  \
-        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) r[c] = load##SET##One(pixel, c);                                   \
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
+            r[c] = load##SET##Head(pixel, c);                                                                          \
+            r[c].chosen.reconnection = load##SET##Path(pixel, c);                                                      \
+        }                                                                                                              \
     }                                                                                                                  \
     uint load##SET##Confidence(uint pixel) { return WORDS[confidenceRow(pixel)][pixel & 3u]; }
 

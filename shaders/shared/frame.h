@@ -52,7 +52,9 @@ SHARED_CONST uint SHIFT_NOT_JOINABLE = 3u;   // too near or too smooth to reconn
 SHARED_CONST uint SHIFT_HIDDEN = 4u;         // something stands between the vertices
 SHARED_CONST uint SHIFT_DARK = 5u;           // joined, but nothing is scattered that way
 SHARED_CONST uint SHIFT_OUTCOMES = 6u;
-SHARED_CONST uint COUNTER_NONFINITE = 11u; // + stage
+SHARED_CONST uint COUNTER_HELD = 11u;      // pixels of which every reservoir holds a sample, when there are several
+SHARED_CONST uint COUNTER_TREES = 12u;     // different path trees among those reservoirs
+SHARED_CONST uint COUNTER_NONFINITE = 13u; // + stage
 SHARED_CONST uint STAGE_PRIMARY = 0u;
 SHARED_CONST uint STAGE_PATH_TRACE = 1u;
 SHARED_CONST uint STAGE_CANONICAL = 2u;
@@ -61,13 +63,13 @@ SHARED_CONST uint STAGE_SPATIAL_TRACE = 4u;
 SHARED_CONST uint STAGE_SPATIAL_GATHER = 5u;
 SHARED_CONST uint STAGE_ACCUMULATE = 6u;
 SHARED_CONST uint STAGE_COUNT = 7u;
-SHARED_CONST uint COUNTER_COUNT = 18u;
+SHARED_CONST uint COUNTER_COUNT = 20u;
 
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 304);
 static_assert(shared::COUNTER_SHIFT == shared::RAY_KINDS);
-static_assert(shared::COUNTER_NONFINITE == shared::COUNTER_SHIFT + shared::SHIFT_OUTCOMES);
+static_assert(shared::COUNTER_HELD == shared::COUNTER_SHIFT + shared::SHIFT_OUTCOMES);
 static_assert(shared::COUNTER_COUNT == shared::COUNTER_NONFINITE + shared::STAGE_COUNT);
 #endif
 #endif

@@ -29,13 +29,19 @@ PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, co
 }
 
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                            uint32_t runs)
+                            uint32_t runs, const passes::CameraAt& cameraAt)
 {
     PictureRuns result;
+    passes::Renderer renderer(device, scene, settings);
     passes::Settings own = settings;
-    for (uint32_t i = 0; i < runs; ++i, ++own.seed) {
-        passes::Renderer renderer(device, scene, own);
-        for (uint32_t frame = 0; frame < settings.frames; ++frame) renderer.renderFrame();
+    for (uint32_t run = 0; run < runs; ++run, ++own.seed) {
+        if (cameraAt) renderer.setCamera(cameraAt(0));
+        renderer.apply(own);
+        renderer.reset();
+        for (uint32_t frame = 0; frame < settings.frames; ++frame) {
+            if (cameraAt) renderer.setCamera(cameraAt(frame));
+            renderer.renderFrame();
+        }
         result.add(renderer.readColor());
         expectFinite(renderer);
     }

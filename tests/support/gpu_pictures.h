@@ -3,6 +3,7 @@
 
 #include "engine/gpu/gpu.h"
 #include "engine/scene/scene.h"
+#include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/support/tile_tests.h"
 
@@ -14,9 +15,9 @@ namespace support
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                               uint32_t frames, scene::FeatureSet features = scene::FeatureSet::Needed);
 
-// `runs` renderers with seeds of their own, each read after settings.frames frames (their mean, or with
-// !settings.average the last): for methods whose frames depend on each other.
+// `runs` runs with seeds of their own, each read after settings.frames frames (their mean, or with !settings.average
+// the last): for methods whose frames depend on each other. The camera moves when `cameraAt` is given.
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                            uint32_t runs);
+                            uint32_t runs, const passes::CameraAt& cameraAt = {});
 
 } // namespace support

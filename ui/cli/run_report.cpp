@@ -46,6 +46,8 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"stage_ms", stats.stageMilliseconds},
             {"rays", stats.rays},
             {"rays_per_second", report.wallSeconds > 0 ? double(rayCount) / report.wallSeconds : 0},
+            {"shifts", stats.shifts},
+            {"trees_per_pixel", stats.treesPerPixel},
             {"nonfinite", stats.nonFinite},
             {"mean_rgb", {report.meanRgb.r, report.meanRgb.g, report.meanRgb.b}},
             {"variant", stats.variant},

@@ -124,6 +124,7 @@ Json sceneJson(const std::string& name, const scene::Scene& world, const passes:
               {"skipped_triangles", stats.bvh.skippedTriangles}}},
             {"scene_bytes", stats.sceneBytes},
             {"bytes_per_pixel", stats.bytesPerPixel},
+            {"reservoir_bytes_per_pixel", stats.reservoirBytes},
             {"memory_bytes", stats.memoryBytes},
             {"variant", variantJson(stats.variant)},
             {"warnings", world.warnings}};
@@ -147,6 +148,9 @@ void printScene(const Json& scene, const passes::Settings& settings)
     print(fmt::format("Memory: {} for the scene, {:.0f} bytes per pixel, {} in all at {}x{}",
                       megabytes(scene["scene_bytes"]), scene["bytes_per_pixel"].get<double>(),
                       megabytes(scene["memory_bytes"]), settings.width, settings.height));
+    if (settings.method != passes::Method::Pt)
+        print(fmt::format("Reservoirs: {:.0f} bytes per pixel and reservoir, for this frame's and the previous one's",
+                          scene["reservoir_bytes_per_pixel"].get<double>()));
     for (const bool in : {true, false}) {
         print(in ? "Compiled in:" : "Left out, because neither the scene nor the settings need it:");
         for (const auto& [name, fact] : scene["variant"].items())

@@ -1,0 +1,91 @@
+#include "tests/support/restir_cases.h"
+
+#include "engine/base/check.h"
+#include "tests/support/gpu_pictures.h"
+#include "tests/support/test_scenes.h"
+
+namespace support
+{
+
+namespace
+{
+
+constexpr uint32_t FRAMES = 5;
+constexpr uint32_t PT_FRAMES = 1500;
+
+} // namespace
+
+std::string RestirCase::name() const
+{
+    constexpr const char* METHODS[] = {"Pt", "Luminance", "Rgb", "Grouped"};
+    constexpr const char* SHIFTS[] = {"Replay", "Reconnection", "Hybrid"};
+    constexpr const char* REUSES[] = {"Temporal", "Spatial", "Both"};
+    return std::string(scene) + METHODS[size_t(method)] + SHIFTS[size_t(shift)] + REUSES[size_t(reuse)] +
+           (moves ? "Moving" : "Resting") + std::to_string(maxConfidence);
+}
+
+void PrintTo(const RestirCase& c, std::ostream* os)
+{
+    *os << c.name();
+}
+
+TileVerdict RestirCase::verdict(gpu::Device& device) const
+{
+    for (const TestScene& test : testScenes()) {
+        if (test.name != std::string(scene)) continue;
+        const scene::Scene world = test.make();
+        passes::Settings settings = test.settings();
+        settings.width = settings.height = 24;
+        const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
+
+        scene::Scene last = world; // as the last frame sees it
+        last.cameras[0] = cameraAt(FRAMES - 1);
+        const PictureEstimates expected = renderFrames(device, last, settings, PT_FRAMES);
+
+        settings.seed = 1000;
+        settings.method = method;
+        settings.shift = shift;
+        settings.temporal = reuse != Reuse::Spatial;
+        settings.spatial = reuse == Reuse::Temporal ? 0 : 3;
+        settings.spatialRadius = 5;
+        settings.maxConfidence = maxConfidence;
+        settings.frames = FRAMES;
+        settings.average = false;
+        return picturesAgree(renderRuns(device, world, settings, runs, cameraAt), expected);
+    }
+    CHECK(!"there is such a scene");
+    return {};
+}
+
+std::vector<RestirCase> restirCases()
+{
+    using enum passes::Method;
+    using enum passes::Shift;
+    using enum Reuse;
+    return {
+        {"Lambert", RgbRestir, Replay, Temporal, true, 8},
+        {"Lambert", RgbRestir, Hybrid, Both, true, 64},
+        {"Lambert", RestirPt, Reconnection, Spatial, false, 8},
+        {"RoughMetal", RgbRestir, Reconnection, Both, true, 8},
+        {"SmoothMetal", RgbRestir, Hybrid, Both, true, 64, 700},
+        {"Mirror", RgbRestir, Hybrid, Both, true, 8},
+        {"Glossy", RestirPt, Hybrid, Both, true, 8},
+        {"Glossy", GroupedRestir, Hybrid, Both, true, 8},
+        {"ClearGlassBall", RgbRestir, Hybrid, Both, true, 8},
+        {"FrostedGlass", RgbRestir, Hybrid, Both, true, 8, 800},
+        {"FrostedPane", RgbRestir, Reconnection, Both, true, 8},
+        {"AlphaBlend", RgbRestir, Hybrid, Both, true, 8},
+        {"NormalMap", RestirPt, Hybrid, Both, true, 8},
+        {"PointLight", RgbRestir, Hybrid, Both, true, 1},
+        {"SunnySky", RgbRestir, Hybrid, Both, true, 8},
+        {"SunnySky", RestirPt, Replay, Both, true, 8},
+        {"TwoSidedLamp", RgbRestir, Hybrid, Both, true, 8},
+        {"ManyLamps", RgbRestir, Hybrid, Both, true, 4096},
+        {"Room", RgbRestir, Hybrid, Both, true, 64},
+        {"Room", RestirPt, Replay, Both, true, 8},
+        {"Room", GroupedRestir, Reconnection, Temporal, false, 8},
+        {"Orthographic", RgbRestir, Hybrid, Both, true, 8},
+    };
+}
+
+} // namespace support

@@ -1,0 +1,34 @@
+#pragma once
+// What to ask of ReSTIR's unbiasedness: a covering choice of scene, estimator, shift map, reuse, M_c and motion.
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/gpu.h"
+#include "passes/settings.h"
+#include "tests/support/tile_tests.h"
+
+namespace support
+{
+
+enum class Reuse { Temporal, Spatial, Both };
+
+struct RestirCase {
+    const char* scene; // of testScenes()
+    passes::Method method;
+    passes::Shift shift;
+    Reuse reuse;
+    bool moves; // the camera turns by 3 degrees a frame
+    uint32_t maxConfidence;
+    uint32_t runs = 200;
+
+    std::string name() const;
+    // The last of 5 frames, its mean over many runs, against the path tracer's picture from the same place.
+    TileVerdict verdict(gpu::Device& device) const;
+};
+void PrintTo(const RestirCase& c, std::ostream* os);
+
+std::vector<RestirCase> restirCases();
+
+} // namespace support
