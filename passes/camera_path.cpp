@@ -155,16 +155,34 @@ CameraAt cameraPath(const Json& path, const scene::Camera& base, const glm::dvec
     return cameraAt;
 }
 
-CameraAt loadCameraPath(const std::filesystem::path& file, const scene::Camera& base, const glm::dvec3& sceneOrigin)
+namespace
+{
+
+template <class Use>
+auto withFile(const std::filesystem::path& file, Use&& use)
 {
     const std::vector<std::byte> bytes = files::read(file, MAX_FILE_BYTES);
     return whileDoing(fmt::format("reading camera path \"{}\"", file.string()), [&] {
         const char* text = reinterpret_cast<const char*>(bytes.data());
         try {
-            return cameraPath(Json::parse(text, text + bytes.size()), base, sceneOrigin);
+            return use(Json::parse(text, text + bytes.size()));
         } catch (const Json::exception& error) {
             throw Error("The camera path is not JSON: {}.", error.what());
         }
+    });
+}
+
+} // namespace
+
+CameraAt loadCameraPath(const std::filesystem::path& file, const scene::Camera& base, const glm::dvec3& sceneOrigin)
+{
+    return withFile(file, [&](const Json& path) { return cameraPath(path, base, sceneOrigin); });
+}
+
+bool standsStill(const std::filesystem::path& file)
+{
+    return withFile(file, [](const Json& path) {
+        return path.is_object() && path.contains("keyframes") && path["keyframes"].size() == 1;
     });
 }
 

@@ -23,6 +23,8 @@ constexpr uint32_t MAX_KEYFRAME = 1000000; // the largest frame of a keyframe
 // after the last one the camera stands still. An orthographic `base` ignores yfov. Throws Error naming the keyframe:
 // anything else in the object, frames that do not increase, a camera without a direction at any frame.
 CameraAt cameraPath(const nlohmann::ordered_json& path, const scene::Camera& base, const glm::dvec3& sceneOrigin);
+// Whether a file has one keyframe only, and so a camera that never moves. Throws Error: not readable, no JSON.
+bool standsStill(const std::filesystem::path& file);
 CameraAt loadCameraPath(const std::filesystem::path& file, const scene::Camera& base, const glm::dvec3& sceneOrigin);
 
 // Turns `base` about the vertical (+y) through its target (scene::Camera::target), counter-clockwise seen from above.

@@ -30,6 +30,7 @@ void MotionOptions::addTo(CLI::App& app)
 void MotionOptions::adjust(passes::Settings& settings, const SettingsOptions& options) const
 {
     if (!moving()) return;
+    if (options.given("average") && settings.average && !path_.empty() && passes::standsStill(path_)) return;
     if (settings.average && options.given("average"))
         throw UsageError(
             "--average on cannot be combined with {}: the mean of frames seen from different places is no picture.",

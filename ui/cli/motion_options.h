@@ -22,7 +22,7 @@ class MotionOptions
     bool moving() const { return !path_.empty() || orbit_ != 0; }
 
     // A mean over frames seen from different places is no picture: with a moving camera --average is off unless the
-    // command line asks for it, which is a UsageError.
+    // command line asks for it, which is a UsageError unless the path is one keyframe: then nothing moves.
     void adjust(passes::Settings& settings, const SettingsOptions& options) const;
 
     // Of the camera that the settings choose. Empty when nothing moves. Throws Error: the file.

@@ -21,5 +21,6 @@ std::span<const Command> commands();
 
 Action setUpInfo(CLI::App& app);
 Action setUpRender(CLI::App& app);
+Action setUpView(CLI::App& app);
 
 } // namespace ui

@@ -1,0 +1,67 @@
+#include "ui/window/screenshot.h"
+
+#include "ui/cli/output_file.h"
+#include "ui/cli/run_report.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace ui
+{
+
+namespace
+{
+
+std::string freeName()
+{
+    for (int i = 1;; ++i) {
+        std::string name = fmt::format("trichrome-{}", i);
+        if (!std::filesystem::exists(name + ".json") && !std::filesystem::exists(name + ".png")) return name;
+    }
+}
+
+// For a POSIX shell.
+std::string quoted(const std::string& word)
+{
+    if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=") ==
+            std::string::npos &&
+        !word.empty())
+        return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+} // namespace
+
+std::string takeScreenshot(const Shot& shot)
+{
+    const std::string name = freeName();
+    RunReport report{.scene = shot.order.scene,
+                     .settings = shot.order.settings,
+                     .adapter = shot.adapter,
+                     .frames = shot.frames,
+                     .stats = shot.stats};
+    report.settings.frames = uint32_t(shot.frames);
+    report.settings.seconds = 0;
+    report.settings.average = !shot.single;
+    std::string camera;
+    if (shot.order.pose) {
+        camera = name + ".camera.json";
+        writeText(camera, toCameraPath(*shot.order.pose).dump(2) + "\n");
+        report.extra = {{"camera-path", camera}};
+    }
+    writeText(name + ".json", passes::toJson(report.settings).dump(2) + "\n");
+    image::write(name + ".png", shot.picture, metadataOf(report));
+    image::write(name + ".exr", shot.picture, metadataOf(report));
+
+    std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
+                                   quoted(shot.order.scene), name, name, quoted(shot.adapter.name));
+    if (!camera.empty())
+        line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
+    return line;
+}
+
+} // namespace ui
