@@ -2,6 +2,7 @@
 #ifndef SHADERS_RESTIR_ESTIMATOR_GLSL
 #define SHADERS_RESTIR_ESTIMATOR_GLSL
 
+#include "lib/frame.glsl"
 #include "restir/reservoir.glsl"
 
 // p_hat_c

@@ -7,7 +7,6 @@
 #ifndef SHADERS_RESTIR_RESERVOIR_GLSL
 #define SHADERS_RESTIR_RESERVOIR_GLSL
 
-#include "lib/frame.glsl"
 #include "restir/path_sample.glsl"
 
 struct Reservoir {

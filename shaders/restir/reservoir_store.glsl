@@ -4,6 +4,7 @@
 #ifndef SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 #define SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 
+#include "lib/frame.glsl"
 #include "restir/reservoir.glsl"
 
 const uint WORD_ROWS = 2u;
