@@ -1,0 +1,24 @@
+#pragma once
+// How far a picture is from a reference, in float64.
+
+#include "engine/image/image.h"
+
+namespace image
+{
+
+struct Metrics {
+    double mse = 0;                    // of linear RGB, mean over pixels and channels, as all that follow
+    double relmse = 0;                 // (x - r)^2 / (r^2 + RELATIVE_EPSILON)
+    double mape = 0;                   // |x - r| / (|r| + RELATIVE_EPSILON)
+    double psnr = 0;                   // dB, peak 1, of c/(c+1); infinite for equal pictures
+    double ssim = 0;                   // of c/(c+1): Wang et al. 2004, 11x11 Gaussian, sigma 1.5, K 0.01 and 0.03, L 1
+    double lumaMse = 0, chromaMse = 0; // of YCoCg: (Y)^2; (Co)^2 + (Cg)^2
+    glm::dvec3 meanRatio = glm::dvec3(1); // sum of the picture over sum of the reference
+};
+
+constexpr double RELATIVE_EPSILON = 1e-2;
+
+// Throws Error: other sizes, a value that is not finite. Values below 0 are tonemapped as 0.
+Metrics measure(const Image& reference, const Image& picture);
+
+} // namespace image

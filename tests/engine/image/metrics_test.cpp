@@ -1,0 +1,111 @@
+// Error figures against closed forms on pictures of one color, and SSIM against sums over each window in two
+// dimensions.
+
+#include "engine/image/metrics.h"
+
+#include "engine/base/error.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+image::Image flat(uint32_t width, uint32_t height, glm::vec3 color)
+{
+    return {width, height, std::vector<glm::vec3>(size_t{width} * height, color)};
+}
+
+image::Image noisy(uint32_t seed, float noise)
+{
+    std::mt19937 random(seed);
+    image::Image picture = flat(23, 17, glm::vec3(0));
+    for (uint32_t y = 0; y < 17; ++y)
+        for (uint32_t x = 0; x < 23; ++x)
+            for (int c = 0; c < 3; ++c)
+                picture.at(x, y)[c] = 1 + std::sin(0.3f * float(x) + float(c)) * std::cos(0.4f * float(y)) +
+                                      noise * float(random() % 256);
+    return picture;
+}
+
+double ssimByDefinition(const image::Image& a, const image::Image& b)
+{
+    const auto mapped = [](float v) { return double(v) / (1 + double(v)); };
+    double total = 0, windows = 0;
+    for (int c = 0; c < 3; ++c)
+        for (int y = 5; y < int(a.height) - 5; ++y)
+            for (int x = 5; x < int(a.width) - 5; ++x) {
+                double weight = 0, ma = 0, mb = 0, va = 0, vb = 0, covariance = 0;
+                for (int pass = 0; pass < 2; ++pass) {
+                    weight = 0;
+                    for (int j = -5; j <= 5; ++j)
+                        for (int i = -5; i <= 5; ++i) {
+                            const double w = std::exp(-(i * i + j * j) / 4.5);
+                            const double p = mapped(a.at(uint32_t(x + i), uint32_t(y + j))[c]);
+                            const double q = mapped(b.at(uint32_t(x + i), uint32_t(y + j))[c]);
+                            weight += w;
+                            if (pass == 0) {
+                                ma += w * p;
+                                mb += w * q;
+                            } else {
+                                va += w * (p - ma) * (p - ma);
+                                vb += w * (q - mb) * (q - mb);
+                                covariance += w * (p - ma) * (q - mb);
+                            }
+                        }
+                    if (pass == 0) ma /= weight, mb /= weight;
+                }
+                va /= weight, vb /= weight, covariance /= weight;
+                total +=
+                    (2 * ma * mb + 1e-4) * (2 * covariance + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
+                ++windows;
+            }
+    return total / windows;
+}
+
+} // namespace
+
+TEST(Metrics, OfPicturesOfOneColorAreTheClosedForms)
+{
+    const image::Metrics m = image::measure(flat(13, 12, {1, 1, 1}), flat(13, 12, {3, 1, 1}));
+    EXPECT_NEAR(m.mse, 4.0 / 3, 1e-12);
+    EXPECT_NEAR(m.relmse, 4 / 1.01 / 3, 1e-12);
+    EXPECT_NEAR(m.mape, 2 / 1.01 / 3, 1e-12);
+    EXPECT_NEAR(m.psnr, -10 * std::log10(0.0625 / 3), 1e-12); // 3/4 against 1/2
+    EXPECT_NEAR(m.ssim, ((2 * 0.75 * 0.5 + 1e-4) / (0.5625 + 0.25 + 1e-4) + 2) / 3, 1e-12);
+    EXPECT_NEAR(m.lumaMse, 0.25, 1e-12);
+    EXPECT_NEAR(m.chromaMse, 1 + 0.25, 1e-12);
+    EXPECT_NEAR(m.meanRatio.r, 3, 1e-12);
+    EXPECT_EQ(m.meanRatio.g, 1);
+}
+
+TEST(Metrics, OfEqualPicturesAreExact)
+{
+    for (const auto& picture : {noisy(1, 0.01f), flat(1, 1, {0, 0, 0}), flat(1, 40, {0.5f, 0, 2})}) {
+        const image::Metrics m = image::measure(picture, picture);
+        EXPECT_EQ(m.mse, 0);
+        EXPECT_EQ(m.psnr, std::numeric_limits<double>::infinity());
+        EXPECT_NEAR(m.ssim, 1, 1e-12);
+        EXPECT_EQ(m.meanRatio, glm::dvec3(1));
+    }
+}
+
+TEST(Metrics, SsimIsItsDefinitionOnThreePairs)
+{
+    for (const float noise : {0.0005f, 0.002f, 0.01f}) {
+        const image::Image a = noisy(1, 0), b = noisy(2, noise);
+        EXPECT_NEAR(image::measure(a, b).ssim, ssimByDefinition(a, b), 1e-9) << noise;
+    }
+}
+
+TEST(Metrics, RefuseOtherSizesAndValuesThatAreNotFinite)
+{
+    EXPECT_THROW(image::measure(flat(2, 3, {}), flat(3, 2, {})), Error);
+    image::Image broken = flat(2, 3, {});
+    broken.at(1, 2).g = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(image::measure(flat(2, 3, {}), broken), Error);
+    EXPECT_THROW(image::measure(broken, flat(2, 3, {})), Error);
+}
