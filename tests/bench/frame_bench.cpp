@@ -15,10 +15,9 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/gpu/gpu.h"
-#include "engine/scene/gltf_loader.h"
-#include "engine/scene/procedural.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
+#include "tests/bench/scenes.h"
 
 namespace
 {
@@ -34,13 +33,6 @@ struct Options {
     uint32_t reference = 0; // frames of the path traced picture that errors are measured against; 0: no errors
     std::string json;
 };
-
-scene::Scene loadScene(const std::string& name)
-{
-    for (const scene::BuiltInScene& scene : scene::builtInScenes())
-        if (name == scene.name) return scene.make();
-    return scene::loadGltf(name);
-}
 
 struct Case {
     std::string method;

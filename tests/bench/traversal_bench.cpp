@@ -21,11 +21,10 @@
 #include "engine/gpu/gpu.h"
 #include "engine/gpu/shader.h"
 #include "engine/scene/bvh.h"
-#include "engine/scene/gltf_loader.h"
-#include "engine/scene/procedural.h"
 
 #include "shaders/shared/types.h"
 #include "tests/bench/embree_apis.h"
+#include "tests/bench/scenes.h"
 #include "tests/support/ray_sets.h"
 
 namespace
@@ -42,13 +41,6 @@ struct Options {
     bool buildOnly = false;
     std::string json, csv;
 };
-
-scene::Scene loadScene(const std::string& name)
-{
-    for (const scene::BuiltInScene& scene : scene::builtInScenes())
-        if (name == scene.name) return scene.make();
-    return scene::loadGltf(name);
-}
 
 // The scene's triangles again and again side by side: large scenes from small ones.
 void repeat(scene::Scene& scene, uint32_t copies)

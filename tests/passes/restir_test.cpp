@@ -129,7 +129,7 @@ TEST_F(RestirTest, RgbIsTheRunningMeanOfThePathTracer)
             }
             // With everything compiled in, last bits and with them single decisions differ
             // (tests/images/variants_test.cpp).
-            EXPECT_LE(wrong, features == scene::FeatureSet::Needed ? 0 : 3 * picture.size() / 100) << name;
+            EXPECT_LE(wrong, features == scene::FeatureSet::Needed ? 0 : 3 * picture.size() / 1000) << name;
         }
     }
 }

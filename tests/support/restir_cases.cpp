@@ -4,6 +4,8 @@
 #include "tests/support/gpu_pictures.h"
 #include "tests/support/test_scenes.h"
 
+#include <cstdlib>
+
 namespace support
 {
 
@@ -12,6 +14,22 @@ namespace
 
 constexpr uint32_t FRAMES = 5;
 constexpr uint32_t PT_FRAMES = 1500;
+
+// Everything with everything, in one scene.
+std::vector<RestirCase> restirMatrix()
+{
+    using enum passes::Method;
+    using enum passes::Shift;
+    using enum Reuse;
+    std::vector<RestirCase> cases;
+    for (const passes::Method method : {RestirPt, RgbRestir, GroupedRestir})
+        for (const passes::Shift shift : {Replay, Reconnection, Hybrid})
+            for (const Reuse reuse : {Temporal, Spatial, Both})
+                for (const bool moves : {false, true})
+                    for (const uint32_t maxConfidence : {1u, 8u, 64u, 4096u})
+                        cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence});
+    return cases;
+}
 
 } // namespace
 
@@ -59,6 +77,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
 
 std::vector<RestirCase> restirCases()
 {
+    if (std::getenv("TRICHROME_TEST_MATRIX") != nullptr) return restirMatrix();
     using enum passes::Method;
     using enum passes::Shift;
     using enum Reuse;
@@ -81,8 +100,8 @@ std::vector<RestirCase> restirCases()
         {"SunnySky", RestirPt, Replay, Both, true, 8},
         {"TwoSidedLamp", RgbRestir, Hybrid, Both, true, 8},
         {"ManyLamps", RgbRestir, Hybrid, Both, true, 4096},
-        {"Room", RgbRestir, Hybrid, Both, true, 64},
-        {"Room", RestirPt, Replay, Both, true, 8},
+        {"Room", RgbRestir, Hybrid, Both, true, 64, 450},
+        {"Room", RestirPt, Replay, Both, true, 8, 450},
         {"Room", GroupedRestir, Reconnection, Temporal, false, 8},
         {"Orthographic", RgbRestir, Hybrid, Both, true, 8},
     };

@@ -29,6 +29,7 @@ struct RestirCase {
 };
 void PrintTo(const RestirCase& c, std::ostream* os);
 
+// With TRICHROME_TEST_MATRIX set: the whole product, in one scene.
 std::vector<RestirCase> restirCases();
 
 } // namespace support
