@@ -165,7 +165,7 @@ void drawPanel(PanelState& state, const std::shared_ptr<const Shot>& shot, const
     ImGui::Begin("Trichrome", nullptr,
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                      ImGuiWindowFlags_NoTitleBar);
-    ImGui::PushItemWidth(-ImGui::GetFontSize() * 9);
+    ImGui::PushItemWidth(-ImGui::GetFontSize() * 10);
     drawBadge(shot);
     if (activity.empty())
         ImGui::TextColored(GRAY, "%s", state.order.paused ? "Paused" : "Rendering");

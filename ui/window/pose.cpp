@@ -53,7 +53,7 @@ nlohmann::ordered_json toCameraPath(const Pose& pose)
 {
     const auto list = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
     return {{"keyframes",
-             {{{"frame", 0},
+             {{{"frame", 0u},
                {"position", list(pose.position)},
                {"target", list(pose.target)},
                {"up", list(pose.up)},
