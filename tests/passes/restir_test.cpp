@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/statistics.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/support/gpu_fixture.h"
-#include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
 namespace

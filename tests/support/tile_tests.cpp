@@ -104,13 +104,13 @@ TileEstimates TileRuns::estimates() const
 TileVerdict tilesAgree(const TileEstimates& a, const TileEstimates& b, double familyLevel, double relativeRounding)
 {
     checkSameShape(a, b);
-    const double level = sidakLevel(familyLevel, 3 * a.tiles.size());
+    const double level = statistics::sidakLevel(familyLevel, 3 * a.tiles.size());
     TileVerdict verdict{true, {}};
     double worst = 2;
     for (size_t tile = 0; tile < a.tiles.size(); ++tile) {
         for (size_t c = 0; c < 3; ++c) {
             const Estimate &left = a.tiles[tile][c], &right = b.tiles[tile][c];
-            const Difference d = compare(left, right, relativeRounding);
+            const statistics::Difference d = statistics::compare(left, right, relativeRounding);
             // Written so that a NaN on either side fails.
             if (!(d.p >= level)) verdict.passes = false;
             if (d.p >= worst) continue;
@@ -135,10 +135,10 @@ TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, d
     for (size_t tile = 0; tile < a.tiles.size(); ++tile) {
         for (size_t c = 0; c < 3; ++c) {
             const Estimate &left = a.tiles[tile][c], &right = b.tiles[tile][c];
-            const Difference d = compare(left, right, 1e-6);
+            const statistics::Difference d = statistics::compare(left, right, 1e-6);
             const double scale = std::max(std::abs(right.mean), std::abs(pictureMean[c]));
             if (scale == 0 && d.difference == 0 && d.standardError == 0) continue; // both are exactly black
-            if (!showsEquivalence(d, margin * scale, level)) verdict.passes = false;
+            if (!statistics::showsEquivalence(d, margin * scale, level)) verdict.passes = false;
             const double reach = (std::abs(d.difference) + 2 * d.standardError) / scale;
             if (reach < worst) continue;
             worst = reach;

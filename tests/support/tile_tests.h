@@ -9,11 +9,14 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/base/statistics.h"
 #include "engine/image/image.h"
-#include "tests/support/statistics.h"
 
 namespace support
 {
+
+using statistics::Estimate;
+using statistics::Moments;
 
 constexpr uint32_t TILE_SIZE = 8; // pixels
 

@@ -2,8 +2,8 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/base/statistics.h"
 #include "tests/support/gpu_fixture.h"
-#include "tests/support/statistics.h"
 
 namespace
 {
@@ -57,7 +57,7 @@ double pOfEqualBins(const std::vector<double>& counts)
     double sum = 0;
     for (const double count : counts) sum += count;
     const std::vector<double> expected(counts.size(), sum / double(counts.size()));
-    return support::chiSquaredTest(counts, expected).p;
+    return statistics::chiSquaredTest(counts, expected).p;
 }
 
 TEST_F(Random, Pcg4dIsThePublishedFunction)

@@ -4,8 +4,8 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/base/statistics.h"
 #include "tests/support/gpu_fixture.h"
-#include "tests/support/statistics.h"
 
 namespace
 {
@@ -51,7 +51,7 @@ class Sampling : public GpuTest
             }
         EXPECT_NEAR(sum / std::pow(BINS * STEPS, 2), 1, 2e-3); // a density
         for (double& e : expected) e *= double(samples.size()) / sum;
-        return support::chiSquaredTest(counts, expected).p;
+        return statistics::chiSquaredTest(counts, expected).p;
     }
     static double uniform(double, double) { return 1; }
     static double turns(const glm::dvec3& w) // azimuth in [0, 1)

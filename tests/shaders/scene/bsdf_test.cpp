@@ -4,11 +4,11 @@
 #include <functional>
 #include <numbers>
 
+#include "engine/base/statistics.h"
 #include "engine/scene/shapes.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/reference_material.h"
 #include "tests/support/scene_buffers.h"
-#include "tests/support/statistics.h"
 
 namespace
 {
@@ -180,7 +180,7 @@ TEST_F(Bsdf, SamplesWithTheDensityItClaims)
         counts.push_back(lost);
         expected.push_back(SAMPLES - sum);
         if (sum == 0) return; // all Dirac
-        EXPECT_GT(support::chiSquaredTest(counts, expected, 20).p, 1e-5);
+        EXPECT_GT(statistics::chiSquaredTest(counts, expected, 20).p, 1e-5);
     });
 }
 
@@ -208,11 +208,11 @@ TEST_F(Bsdf, HasTheAlbedoOfTheModel)
 {
     support::Random random(2);
     forEachSurface([&](const dvec3& wo) {
-        support::Moments device, expected;
+        statistics::Moments device, expected;
         for (const Sampled& s : sample(wo, 1 << 17)) device.add(s.weight.x);
         const ReferenceSurface surface = reference(wo);
         for (int i = 0; i < 200000; ++i) expected.add(surface.sample(random).weight.x);
-        const support::Difference d = support::compare(estimateOf(device), estimateOf(expected), 1e-5);
+        const statistics::Difference d = statistics::compare(estimateOf(device), estimateOf(expected), 1e-5);
         EXPECT_GT(d.p, 1e-5) << device.mean() << " against " << expected.mean();
         EXPECT_LE(device.mean(), 1 + 5 * std::sqrt(device.varianceOfMean()) + 1e-6);
     });

@@ -4,10 +4,10 @@
 #include <map>
 #include <numbers>
 
+#include "engine/base/statistics.h"
 #include "engine/scene/shapes.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/scene_buffers.h"
-#include "tests/support/statistics.h"
 
 namespace
 {
@@ -80,7 +80,7 @@ TEST_F(Lights, ComeWithTheDensityOfTheirDirection)
 TEST_F(Lights, AreSampledWithTheDensityTheyClaim)
 {
     scene::Scene scene = lamps();
-    std::map<uint32_t, support::Moments> solidAngle; // by parallelogram
+    std::map<uint32_t, statistics::Moments> solidAngle; // by parallelogram
     for (const LightSample& s : sample(scene))
         for (uint32_t quad = 0; quad < 4; ++quad) {
             const bool here = uint32_t(s.triangle) / 2 == quad && s.densityAgain > 0;
@@ -95,7 +95,7 @@ TEST_F(Lights, AreSampledWithTheDensityTheyClaim)
             const double volume = std::abs(glm::dot(v[0], glm::cross(v[1], v[2])));
             expected += 2 * std::atan2(volume, 1 + glm::dot(v[0], v[1]) + glm::dot(v[1], v[2]) + glm::dot(v[2], v[0]));
         }
-        const support::Moments& found = solidAngle[quad];
+        const statistics::Moments& found = solidAngle[quad];
         EXPECT_NEAR(found.mean(), expected, 4.5 * std::sqrt(found.varianceOfMean()) + 1e-4 * expected) << quad;
         EXPECT_LT(std::sqrt(found.varianceOfMean()), 0.1 * expected) << quad; // else it shows nothing
     }
@@ -127,7 +127,7 @@ TEST_F(Lights, OfTheSkyAreSampledWithTheDensityTheyClaim)
         const bool onEdge = std::abs(s.radiance.x / scale_ - radiance) > 1e-3; // the shader took the neighbor
         ASSERT_TRUE(onEdge || std::abs(s.density - radiance / sum) < 1e-3 * s.density);
     }
-    EXPECT_GT(support::chiSquaredTest(counts, expected).p, 1e-4);
+    EXPECT_GT(statistics::chiSquaredTest(counts, expected).p, 1e-4);
 }
 
 // Every kind is picked; where it is Dirac, the radiance is irradiance by its law.
@@ -144,7 +144,7 @@ TEST_F(Lights, WithoutExtentHaveTheirLaws)
                             .innerConeAngle = 0.1f,
                             .outerConeAngle = 0.7f});
     scene.lights.push_back({.kind = scene::LightKind::Directional, .intensity = {0.5f, 1, 2}, .direction = {0, -1, 0}});
-    std::map<int, support::Moments> red; // by the axis towards the light
+    std::map<int, statistics::Moments> red; // by the axis towards the light
     for (const LightSample& s : sample(scene)) {
         ASSERT_EQ(s.kind, 1);
         const int axis = s.direction.x > 0.9f ? 0 : s.direction.y > 0.9f ? 1 : 2;

@@ -1,4 +1,4 @@
-#include "tests/support/statistics.h"
+#include "engine/base/statistics.h"
 
 #include "engine/base/check.h"
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace support
+namespace statistics
 {
 
 // ------------------------------------------------------------------------------------------------------------ moments
@@ -175,6 +175,15 @@ double chiSquaredUpperTail(double x, double degreesOfFreedom)
     return incompleteGammaUpper(degreesOfFreedom / 2, x / 2);
 }
 
+Interval meanInterval(const Estimate& estimate, double level)
+{
+    constexpr double INF = std::numeric_limits<double>::infinity();
+    if (!(estimate.degreesOfFreedom > 0)) return {-INF, INF};
+    const double half =
+        studentQuantile((1 + level) / 2, estimate.degreesOfFreedom) * std::sqrt(estimate.varianceOfMean);
+    return {estimate.mean - half, estimate.mean + half};
+}
+
 double sidakLevel(double family, uint64_t tests)
 {
     return -std::expm1(std::log1p(-family) / static_cast<double>(tests));
@@ -254,4 +263,4 @@ Jackknife jackknife(std::span<const double> samples, const std::function<double(
     return result;
 }
 
-} // namespace support
+} // namespace statistics

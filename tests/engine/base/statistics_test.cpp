@@ -1,4 +1,4 @@
-#include "tests/support/statistics.h"
+#include "engine/base/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace support
+namespace statistics
 {
 namespace
 {
@@ -214,5 +214,25 @@ TEST(Jackknife, CorrectsBiasAndCoversTheTruth)
     EXPECT_NEAR(covered / double{trials}, 0.95, 0.02);
 }
 
+TEST(MeanInterval, HoldsTheMeanAsOftenAsItSays)
+{
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> gauss(3.0, 2.0);
+    constexpr int TRIALS = 20000;
+    int held = 0;
+    for (int trial = 0; trial < TRIALS; ++trial) {
+        Moments moments;
+        for (int i = 0; i < 5; ++i) moments.add(gauss(random));
+        const Interval interval = meanInterval(estimateOf(moments));
+        held += interval.low <= 3.0 && 3.0 <= interval.high;
+    }
+    expectRate(held, TRIALS, 0.95);
+
+    Moments one;
+    one.add(1);
+    EXPECT_EQ(meanInterval(estimateOf(one)).low, -INF);
+    EXPECT_EQ(meanInterval({.mean = 2, .varianceOfMean = 0, .degreesOfFreedom = INF}).high, 2);
+}
+
 } // namespace
-} // namespace support
+} // namespace statistics

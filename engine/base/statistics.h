@@ -1,12 +1,12 @@
 #pragma once
-// The arithmetic of statistical tests: moments, tail probabilities, z, t and chi-squared tests, the jackknife.
-// Tests over the tiles of pictures, built on these, are in tile_tests.h.
+// The arithmetic of measurements and of statistical tests: moments, tail probabilities, intervals, z, t and chi-squared
+// tests, the jackknife.
 
 #include <cstdint>
 #include <functional>
 #include <span>
 
-namespace support
+namespace statistics
 {
 
 // Streaming mean and central moments up to the fourth (Welford 1962; merging: Chan et al. 1979, Pebay 2008).
@@ -46,6 +46,14 @@ double studentUpperTail(double t, double degreesOfFreedom);    // P(T > t); infi
 double studentQuantile(double p, double degreesOfFreedom);     // t with P(T < t) = p
 double chiSquaredUpperTail(double x, double degreesOfFreedom); // P(X > x)
 
+// Where the mean of a distribution lies, after independent values of it, with probability `level` (Student's t; exact
+// for Gaussian values). One value tells nothing: from -infinity to infinity.
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+Interval meanInterval(const Estimate& estimate, double level = 0.95);
+
 // Level of each of `tests` independent tests such that any of them rejects a true hypothesis with probability `family`.
 double sidakLevel(double family, uint64_t tests);
 
@@ -79,4 +87,4 @@ struct Jackknife {
 };
 Jackknife jackknife(std::span<const double> samples, const std::function<double(std::span<const double>)>& statistic);
 
-} // namespace support
+} // namespace statistics
