@@ -35,7 +35,7 @@ bool isNumber(const std::string& text)
            text.find_first_of("0123456789") != std::string::npos;
 }
 
-std::string quoted(const std::string& argument)
+std::string shellQuoted(const std::string& argument)
 {
     const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
     if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
@@ -155,7 +155,7 @@ std::string commandLine()
     std::ifstream file("/proc/self/cmdline", std::ios::binary);
     std::string line;
     for (std::string argument; std::getline(file, argument, '\0');)
-        line += (line.empty() ? "" : " ") + quoted(argument);
+        line += (line.empty() ? "" : " ") + shellQuoted(argument);
     return line;
 }
 
