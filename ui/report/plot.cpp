@@ -22,7 +22,7 @@ constexpr int EXIT_NO_PROGRAM = 127; // as shells report it
 // Distinct also for people who do not tell red from green (Okabe and Ito).
 constexpr const char* COLORS[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
-std::string quoted(const std::string& text)
+std::string gnuplotText(const std::string& text)
 {
     std::string result = "\"";
     for (const char c : text) {
@@ -52,8 +52,8 @@ std::string gnuplotScript(const Plot& plot)
         "set terminal svg size 860,520 dynamic font \"sans-serif,14\" background \"#ffffff\" noenhanced\n"
         "set key outside right top vertical noenhanced\nset grid lc rgb \"#d5dae3\"\n"
         "set format x \"%g\"\nset format y \"%g\"\n";
-    script += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.xLabel) + "\nset ylabel " +
-              quoted(plot.yLabel) + "\n";
+    script += "set title " + gnuplotText(plot.title) + "\nset xlabel " + gnuplotText(plot.xLabel) + "\nset ylabel " +
+              gnuplotText(plot.yLabel) + "\n";
     if (plot.logX) script += "set logscale x\n";
     if (plot.logY) script += "set logscale y\n";
 
@@ -79,7 +79,7 @@ std::string gnuplotScript(const Plot& plot)
         if (rows.empty()) continue;
         script += fmt::format("$data{} << EOD\n{}EOD\n", s, rows);
         const auto add = [&](const std::string& curve) { curves += (curves.empty() ? "plot " : ", \\\n  ") + curve; };
-        add(fmt::format("$data{} using 1:2 {} title {}", s, styleOf(series), quoted(series.name)));
+        add(fmt::format("$data{} using 1:2 {} title {}", s, styleOf(series), gnuplotText(series.name)));
         if (interval)
             add(fmt::format("$data{} using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb \"{}\" notitle", s,
                             COLORS[size_t(series.color) % std::size(COLORS)]));

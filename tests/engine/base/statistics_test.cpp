@@ -218,7 +218,7 @@ TEST(MeanInterval, HoldsTheMeanAsOftenAsItSays)
 {
     std::mt19937_64 random(7);
     std::normal_distribution<double> gauss(3.0, 2.0);
-    constexpr int TRIALS = 20000;
+    constexpr int TRIALS = 5000;
     int held = 0;
     for (int trial = 0; trial < TRIALS; ++trial) {
         Moments moments;
@@ -228,9 +228,7 @@ TEST(MeanInterval, HoldsTheMeanAsOftenAsItSays)
     }
     expectRate(held, TRIALS, 0.95);
 
-    Moments one;
-    one.add(1);
-    EXPECT_EQ(meanInterval(estimateOf(one)).low, -INF);
+    EXPECT_EQ(meanInterval({.mean = 1}).low, -INF);
     EXPECT_EQ(meanInterval({.mean = 2, .varianceOfMean = 0, .degreesOfFreedom = INF}).high, 2);
 }
 

@@ -37,7 +37,7 @@ TEST(Plot, IsDrawnByGnuplot)
     ASSERT_TRUE(svg);
     EXPECT_NE(svg->find("pt_x"), std::string::npos); // no subscripts
     EXPECT_NE(svg->find("MSE"), std::string::npos);
-    EXPECT_NE(svg->find("#d55e00"), std::string::npos);
+    EXPECT_NE(svg->find("213,  94,   0"), std::string::npos); // the second color
     EXPECT_EQ(svg->find("</svg>") + 6, svg->find_last_not_of('\n') + 1);
 
     ui::Plot empty = example();
