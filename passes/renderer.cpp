@@ -51,8 +51,8 @@ constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 } // namespace
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet)
-    : device_(device), settings_(settings), featureSet_(featureSet)
+                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs)
+    : device_(device), settings_(settings), featureSet_(featureSet), runs_(runs)
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     orthographic_ = camera.orthographic;
@@ -78,7 +78,7 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
 void Renderer::createBuffers()
 {
-    const uint64_t pixels = uint64_t{settings_.width} * settings_.height;
+    const uint64_t pixels = uint64_t{settings_.width} * pictureHeight();
     stats_.bytesPerPixel = 0;
     const auto perPixel = [&](const char* label, uint64_t bytes, const char* setting = "--size") {
         stats_.bytesPerPixel += double(bytes);
@@ -106,7 +106,8 @@ void Renderer::createBuffers()
     shifted_ = perPixel("Shifted", count * settings_.spatial * sizeof(glm::vec4), "--size or --spatial");
 
     frame_.width = settings_.width;
-    frame_.height = settings_.height;
+    frame_.height = pictureHeight();
+    frame_.runHeight = settings_.height;
     if (resamples) {
         const Estimator& estimator = estimatorOf(settings_.method);
         for (size_t c = 0; c < count; ++c) {
@@ -136,7 +137,7 @@ void Renderer::createStages()
     primary_ = stage("primary");
     accumulate_ = stage("accumulate");
     for (std::unique_ptr<Stage>* other :
-         {&pathTrace_, &canonical_, &temporalResting_, &temporalMoving_, &spatialTrace_, &spatialGather_})
+         {&pathTrace_, &canonical_, &temporalResting_, &temporalMoving_, &spatialTrace_, &spatialGather_, &reproject_})
         other->reset();
     if (settings_.method == Method::Pt) {
         pathTrace_ = stage("path_trace");
@@ -158,7 +159,7 @@ std::unique_ptr<Stage> Renderer::makeStage(const char* name, const Variant& vari
                               {"Film", &film_},           {"Reservoirs", &reservoirs_},
                               {"History", &history_},     {"ReservoirPaths", &reservoirPaths_},
                               {"Neighbors", &neighbors_}, {"HistoryPaths", &historyPaths_},
-                              {"Shifted", &shifted_}};
+                              {"Shifted", &shifted_},     {"PreviousPixels", &previousPixels_}};
     auto stage = std::make_unique<Stage>(context, name, all);
     stats_.compileSeconds += secondsSince(start);
     return stage;
@@ -202,7 +203,7 @@ void Renderer::apply(const Settings& settings)
 // The paper's four stages, between what a pixel sees and what the film keeps.
 void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
 {
-    const gpu::Threads pixels = {settings_.width, settings_.height};
+    const gpu::Threads pixels = {settings_.width, pictureHeight()};
     primary_->encode(encoder, pixels);
     if (pathTrace_) pathTrace_->encode(encoder, pixels);
     if (canonical_) canonical_->encode(encoder, pixels);
@@ -271,7 +272,7 @@ image::Image Renderer::readColor()
 
 image::Image Renderer::readFrame()
 {
-    image::Image picture{.width = settings_.width, .height = settings_.height};
+    image::Image picture{.width = settings_.width, .height = pictureHeight()};
     for (const glm::vec4& value : device_.queue().readAs<glm::vec4>(color_))
         picture.pixels.emplace_back(glm::dvec3(value) / radianceScale_);
     return picture;
@@ -279,12 +280,31 @@ image::Image Renderer::readFrame()
 
 image::Image Renderer::readMean()
 {
-    image::Image picture{.width = settings_.width, .height = settings_.height};
+    image::Image picture{.width = settings_.width, .height = pictureHeight()};
     const std::vector<glm::vec4> film = device_.queue().readAs<glm::vec4>(film_);
     const double scale = 1 / (radianceScale_ * double(std::max<uint64_t>(frameCount_, 1)));
     for (size_t i = 0; i < film.size(); i += 2) // the carry is what the sum has too much
         picture.pixels.emplace_back((glm::dvec3(film[i]) - glm::dvec3(film[i + 1])) * scale);
     return picture;
+}
+
+std::vector<uint32_t> Renderer::readPreviousPixels()
+{
+    CHECK_LE(uint64_t{2}, frameCount_);
+    wait();
+    if (!reproject_) {
+        const uint64_t pixels = uint64_t{settings_.width} * settings_.height;
+        previousPixels_ = device_.createBuffer(
+            {.label = "PreviousPixels", .size = std::max<uint64_t>(pixels, 4) * sizeof(uint32_t), .setting = "--size"});
+        reproject_ = makeStage("reproject", variant_);
+    }
+    gpu::CommandEncoder encoder = device_.createCommandEncoder("reproject");
+    reproject_->encode(encoder, {settings_.width, settings_.height});
+    inFlight_.push_back(device_.queue().submit(std::move(encoder)));
+    wait();
+    std::vector<uint32_t> list = device_.queue().readAs<uint32_t>(previousPixels_);
+    list.resize(size_t{settings_.width} * settings_.height); // the buffer may be larger
+    return list;
 }
 
 RenderStats Renderer::stats()

@@ -43,10 +43,11 @@ class Renderer
 {
   public:
     // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same
-    // picture, slower: for tests and benchmarks.
+    // picture, slower: for tests and benchmarks. Independent `runs` of the picture lie below each other in what is
+    // rendered and read, width x (height * runs); the first is what a lone run with this seed gives, to the bit.
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
-             scene::FeatureSet featureSet = scene::FeatureSet::Needed);
+             scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
@@ -62,7 +63,10 @@ class Renderer
     readColor(); // waits; linear RGB in scene units: the mean of all frames (settings.average), or the last one
     image::Image readFrame(); // waits; the last frame alone
     image::Image readMean();  // waits; the mean of all frames
-    RenderStats stats();      // waits
+    // Waits. For each pixel of the first run the index of the one that saw the same point in the frame before the last,
+    // or shared::NO_NEIGHBOR: as temporal reuse finds it. Needs two frames.
+    std::vector<uint32_t> readPreviousPixels();
+    RenderStats stats(); // waits
 
   private:
     void createBuffers();
@@ -72,10 +76,12 @@ class Renderer
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
+    uint32_t pictureHeight() const { return settings_.height * runs_; }
 
     gpu::Device& device_;
     Settings settings_;
     scene::FeatureSet featureSet_;
+    uint32_t runs_;
     scene::SceneFeatures sceneFeatures_;
     bool orthographic_ = false;
     double lengthScale_ = 1, radianceScale_ = 1;
@@ -89,9 +95,9 @@ class Renderer
 
     std::unique_ptr<scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
-    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_;
+    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;
     std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,
-        spatialGather_, accumulate_;
+        spatialGather_, accumulate_, reproject_;
 };
 
 } // namespace passes

@@ -42,7 +42,7 @@ bool alike(Domain a, Domain b)
            abs(dot(a.normal, b.position - a.position)) < 0.02 * (ORTHOGRAPHIC ? length(frame.camera.up.xyz) : distance);
 }
 
-// The pixel of the previous frame that saw the same point.
+// The pixel of the previous frame, of the same run, that saw the same point.
 bool reproject(Domain here, uint pixel, out uint previousPixel)
 {
     previousPixel = pixel;
@@ -53,10 +53,11 @@ bool reproject(Domain here, uint pixel, out uint previousPixel)
     vec3 right = frame.previousCamera.right.xyz;
     vec3 up = frame.previousCamera.up.xyz;
     vec2 p = vec2(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up)) / depth;
-    vec2 size = vec2(frame.width, frame.height);
+    vec2 size = vec2(frame.width, frame.runHeight);
     vec2 at = floor((p * vec2(0.5, -0.5) + 0.5) * size);
     if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) return false;
-    previousPixel = uint(at.y) * frame.width + uint(at.x);
+    uint runTop = pixel / frame.width / frame.runHeight * frame.runHeight;
+    previousPixel = (runTop + uint(at.y)) * frame.width + uint(at.x);
     return true;
 }
 

@@ -7,10 +7,10 @@
 
 #include "scene/intersect.glsl"
 
-// `at` in pixels, (0, 0) is the picture's upper left corner.
+// `at` in pixels, (0, 0) is the upper left corner of a run's picture.
 Ray cameraRay(CameraUniform camera, vec2 at)
 {
-    vec2 p = vec2(2.0, -2.0) * at / vec2(frame.width, frame.height) + vec2(-1.0, 1.0);
+    vec2 p = vec2(2.0, -2.0) * at / vec2(frame.width, frame.runHeight) + vec2(-1.0, 1.0);
     vec3 offset = p.x * camera.right.xyz + p.y * camera.up.xyz;
     if (ORTHOGRAPHIC) return Ray(camera.position.xyz + offset, camera.forward.xyz, RAY_MAX);
     return Ray(camera.position.xyz, normalize(camera.forward.xyz + offset), RAY_MAX);
@@ -22,7 +22,8 @@ Ray pixelRay(uvec2 pixel, out uint alphaSeed)
     PathSeed seed = PathSeed(frame.frame, pixel.y * frame.width + pixel.x);
     uvec4 random = randomBlock(seed, STREAM_CAMERA, uvec2(frame.key0, frame.key1));
     alphaSeed = random.w;
-    return cameraRay(frame.camera, vec2(pixel) + (BOX_FILTER ? vec2(unitFloat(random.x), unitFloat(random.y)) : vec2(0.5)));
+    vec2 corner = vec2(pixel.x, pixel.y % frame.runHeight);
+    return cameraRay(frame.camera, corner + (BOX_FILTER ? vec2(unitFloat(random.x), unitFloat(random.y)) : vec2(0.5)));
 }
 
 // w_o of a primary hit.

@@ -22,7 +22,7 @@ struct FrameUniform {
     CameraUniform camera;
     CameraUniform previousCamera;
     uint width;  // pixels
-    uint height; // pixels
+    uint height; // pixels, of all runs
     uint frame;  // index since the last reset; with the pixel it is the path's seed
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
@@ -30,9 +30,9 @@ struct FrameUniform {
     uint maxConfidence;   // M_c, frames
     uint neighborCount;   // K
     float neighborRadius; // pixels
+    uint runHeight;       // pixels, of one run's picture: independent runs lie below each other
     uint padding0;
     uint padding1;
-    uint padding2;
     vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };

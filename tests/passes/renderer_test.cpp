@@ -1,9 +1,11 @@
 #include "passes/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "engine/base/statistics.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/test_scenes.h"
 
@@ -133,3 +135,110 @@ TEST_F(RendererTest, IsIndependentOfUnits)
 }
 
 } // namespace
+
+// Side by side with others, a run is what it is alone: the camera, its history and its neighbors are its own.
+TEST_F(RendererTest, TheFirstOfManyRunsIsTheLoneRun)
+{
+    passes::Settings settings = settings_;
+    settings.width = 20; // neither side a multiple of a workgroup's
+    settings.height = 13;
+    settings.spatial = 1;
+    settings.spatialRadius = 8;
+    settings.shift = passes::Shift::Replay;
+    settings.average = false;
+    for (const passes::Method method : {passes::Method::Pt, passes::Method::RgbRestir}) {
+        settings.method = method;
+        Renderer lone = make(settings);
+        Renderer many(device(), scene_, settings, {}, scene::FeatureSet::Needed, 3);
+        for (int frame = 0; frame < 3; ++frame)
+            for (Renderer* renderer : {&lone, &many}) {
+                scene::Camera camera = scene_.cameras[0];
+                camera.position += 0.02 * frame * camera.right;
+                renderer->setCamera(camera);
+                renderer->renderFrame();
+            }
+        const Pixels one = lone.readFrame().pixels;
+        const image::Image all = many.readFrame();
+        ASSERT_EQ(all.height, 3 * settings.height);
+        EXPECT_EQ(one, Pixels(all.pixels.begin(), all.pixels.begin() + ptrdiff_t(one.size())));
+        EXPECT_NE(one,
+                  Pixels(all.pixels.begin() + ptrdiff_t(one.size()), all.pixels.begin() + 2 * ptrdiff_t(one.size())));
+        EXPECT_EQ(many.readPreviousPixels(), lone.readPreviousPixels());
+    }
+}
+
+// All runs have one expectation, and know nothing of each other.
+TEST_F(RendererTest, RunsAreIndependentAndAlike)
+{
+    constexpr uint32_t RUNS = 6;
+    constexpr int FRAMES = 200;
+    passes::Settings settings = settings_;
+    settings.width = settings.height = 12;
+    Renderer renderer(device(), scene_, settings, {}, scene::FeatureSet::Needed, RUNS);
+    const size_t pixels = size_t{settings.width} * settings.height;
+    std::vector<statistics::Moments> values(RUNS * pixels);
+    std::vector<Pixels> frames;
+    for (int frame = 0; frame < FRAMES; ++frame) {
+        renderer.renderFrame();
+        frames.push_back(renderer.readFrame().pixels);
+        for (size_t i = 0; i < values.size(); ++i) values[i].add(frames.back()[i].g);
+    }
+    statistics::Moments correlation;
+    for (size_t run = 0; run + 1 < RUNS; ++run)
+        for (size_t p = 0; p < pixels; ++p) {
+            const size_t a = run * pixels + p, b = a + pixels;
+            double product = 0;
+            for (const Pixels& frame : frames)
+                product += (frame[a].g - values[a].mean()) * (frame[b].g - values[b].mean());
+            const double scale = std::sqrt(values[a].variance() * values[b].variance());
+            if (scale > 0) correlation.add(product / (FRAMES - 1) / scale);
+        }
+    ASSERT_GT(correlation.count(), pixels);
+    EXPECT_LT(std::abs(correlation.mean()), 4 / std::sqrt(double(FRAMES) * double(correlation.count())));
+
+    // Run against run, pixel by pixel: as many Welch tests, one family.
+    std::vector<double> p;
+    for (size_t run = 1; run < RUNS; ++run)
+        for (size_t i = 0; i < pixels; ++i) {
+            if (values[i].variance() == 0 && values[run * pixels + i].variance() == 0) {
+                EXPECT_EQ(values[i].mean(), values[run * pixels + i].mean());
+                continue;
+            }
+            p.push_back(compare(statistics::estimateOf(values[i]), statistics::estimateOf(values[run * pixels + i])).p);
+        }
+    EXPECT_GT(*std::ranges::min_element(p), statistics::sidakLevel(1e-3, p.size()));
+}
+
+TEST_F(RendererTest, KnowsWherePointsWereSeenBefore)
+{
+    Renderer renderer = make(settings_);
+    renderer.renderFrame();
+    renderer.renderFrame();
+    size_t seen = 0;
+    std::vector<uint32_t> list = renderer.readPreviousPixels();
+    ASSERT_EQ(list.size(), size_t{settings_.width} * settings_.height);
+    for (uint32_t p = 0; p < list.size(); ++p) {
+        if (list[p] == shared::NO_NEIGHBOR) continue;
+        EXPECT_EQ(list[p], p);
+        ++seen;
+    }
+    EXPECT_GT(seen, list.size() / 4);
+
+    // A camera turned right by about 3 pixels: what is seen now was further right before.
+    scene::Camera camera = scene_.cameras[0];
+    const double pixel = 2 * std::tan(camera.yfov / 2) / settings_.height;
+    camera.forward = glm::normalize(camera.forward + 3 * pixel * camera.right);
+    camera.right = glm::normalize(glm::cross(camera.forward, camera.up));
+    renderer.setCamera(camera);
+    renderer.renderFrame();
+    list = renderer.readPreviousPixels();
+    size_t moved = 0, found = 0;
+    for (uint32_t p = 0; p < list.size(); ++p) {
+        if (list[p] == shared::NO_NEIGHBOR) continue;
+        ++found;
+        const int dx = int(list[p] % settings_.width) - int(p % settings_.width);
+        moved += dx >= 2 && dx <= 4;
+    }
+    EXPECT_GT(found, seen / 2);
+    EXPECT_EQ(moved, found);
+}
