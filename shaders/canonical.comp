@@ -2,33 +2,24 @@
 #extension GL_GOOGLE_include_directive : require
 // Stage 1. Walks one new path tree a pixel and offers every path to all of the pixel's reservoirs (Algorithm 1).
 #define STAGE STAGE_CANONICAL
-#include "scene/bindings.glsl"
+#include "lib/frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
 layout(set = SET_PASS, binding = 1, std430) buffer Reservoirs { uvec4 reservoirs[]; };
 layout(set = SET_PASS, binding = 2, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
 layout(set = SET_PASS, binding = 3, std430) writeonly buffer Color { vec4 color[]; }; // seen directly; gather adds the rest
 
+#include "candidates.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
 STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
 
-#include "path/primary_hit.glsl"
-#include "path/walk.glsl"
-
 Reservoir canonical[MAX_RESERVOIRS];
-PathSeed seed;
 
-bool visit(Vertex x) { return true; }
-bool wants(uint leaf) { return true; }
-bool goesOn(uint k) { return k < MAX_BOUNCES || HAS_REACHABLE_LIGHT; }
-void emit(uint leaf, vec3 f, Ending e)
+void offer(PathSample y, vec3 f, float density)
 {
-    float density;
-    PathSample y = cutPath(seed, leaf, e, density);
     f = finiteOrCounted(f, STAGE);
     vec3 stored = finiteOrCounted(f * density, STAGE);
-    float u = decisionFloat(decisionRandom(seed.pixel, STREAM_CANONICAL + leaf).x); // one for all reservoirs
+    float u = decisionFloat(decisionRandom(y.seed.pixel, STREAM_CANONICAL + y.leaf).x); // one for all reservoirs
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!consider(canonical[c], targetOf(c, f), u)) continue;
         canonical[c].chosen = y;
@@ -43,12 +34,10 @@ void main()
     uint index = pixel.y * frame.width + pixel.x;
 
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) canonical[c] = EMPTY;
-    seed = PathSeed(frame.frame, index);
-    PrimaryHit hit = loadPrimaryHit(pixel);
-    if (hit.seen) walk(hit.s, hit.wo, seed);
-    color[index] = vec4(finiteOrCounted(hit.emission, STAGE), 0.0);
+    vec3 emission;
+    bool seen = offerCandidates(PathSeed(frame.frame, index), pixel, emission);
+    color[index] = vec4(finiteOrCounted(emission, STAGE), 0.0);
     storeReservoirs(index, canonical);
-    storeReservoirsConfidence(index, hit.seen ? 1u : 0u); // also when no path carried light: that is news too
-    addToCounter(COUNTER_BOUNCE, tracedRays);
-    addToCounter(COUNTER_SHADOW, shadowRays);
+    storeReservoirsConfidence(index, seen ? 1u : 0u); // also when no path carried light: that is news too
+    countCandidates();
 }

@@ -1,9 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The plain path tracer: sums every path that the walker reports.
-#include "scene/bindings.glsl"
+#include "lib/frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
 layout(set = SET_PASS, binding = 1, std430) writeonly buffer Color { vec4 color[]; };
 
 #include "path/primary_hit.glsl"

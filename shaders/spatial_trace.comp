@@ -2,9 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Stage 3. For every pixel and slot: picks a neighbor, shifts its samples here and this pixel's samples there.
 #define STAGE STAGE_SPATIAL_TRACE
-#include "scene/bindings.glsl"
+#include "lib/frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
 layout(set = SET_PASS, binding = 1, std430) readonly buffer Reservoirs { uvec4 reservoirs[]; };
 layout(set = SET_PASS, binding = 2, std430) readonly buffer ReservoirPaths { uvec4 reservoirPaths[]; };
 layout(set = SET_PASS, binding = 3, std430) writeonly buffer Neighbors { uint neighbors[]; }; // pixel, by slot

@@ -2,9 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Stage 2. Merges each pixel's canonical reservoirs with those of the pixel that saw the same point in the previous frame.
 #define STAGE STAGE_TEMPORAL
-#include "scene/bindings.glsl"
+#include "lib/frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
 layout(set = SET_PASS, binding = 1, std430) readonly buffer History { uvec4 history[]; };
 layout(set = SET_PASS, binding = 2, std430) readonly buffer HistoryPaths { uvec4 historyPaths[]; };
 layout(set = SET_PASS, binding = 3, std430) buffer Reservoirs { uvec4 reservoirs[]; };

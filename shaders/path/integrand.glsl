@@ -1,10 +1,12 @@
 // What resampling knows of light transport: domains, and paths shifted between them. Tests put a closed-form integrand
-// of the same five names in its place.
+// of the same names in its place: Domain (of which stages read `seen`), makeDomain, alike, reproject, shiftInto,
+// countShifts.
 #ifndef SHADERS_PATH_INTEGRAND_GLSL
 #define SHADERS_PATH_INTEGRAND_GLSL
 
 #include "restir/reservoir.glsl"
 
+#include "path/surfaces.glsl"
 #include "path/walk.glsl"
 
 // The integral of one pixel in one frame: what it sees, and from where.
@@ -19,8 +21,7 @@ struct Domain {
 
 Domain makeDomain(uint pixel, bool previous)
 {
-    uint slice = previous ? 1u - frame.slice : frame.slice;
-    uvec4 hit = surfaces[slice * frame.width * frame.height + pixel];
+    uvec4 hit = seenBy(pixel, previous);
     Domain d;
     d.seen = hit.x != NO_HIT;
     if (!d.seen) return d;

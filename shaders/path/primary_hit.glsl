@@ -1,7 +1,8 @@
-// What a pixel sees in this frame, from the stored hit of primary.comp. The includer declares the buffer `surfaces`.
+// What a pixel sees in this frame, from the stored hit of primary.comp.
 #ifndef SHADERS_PATH_PRIMARY_HIT_GLSL
 #define SHADERS_PATH_PRIMARY_HIT_GLSL
 
+#include "path/surfaces.glsl"
 #include "scene/camera.glsl"
 #include "scene/lights.glsl"
 
@@ -14,7 +15,7 @@ struct PrimaryHit {
 
 PrimaryHit loadPrimaryHit(uvec2 pixel)
 {
-    uvec4 words = surfaces[(frame.slice * frame.height + pixel.y) * frame.width + pixel.x];
+    uvec4 words = seenBy(pixel.y * frame.width + pixel.x, false);
     PrimaryHit hit;
     hit.seen = words.x != NO_HIT;
     if (hit.seen) {
