@@ -44,4 +44,7 @@ Image decodeHdr(std::span<const std::byte> bytes, const std::string& what);
 std::vector<std::byte> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgb,
                                  const Metadata& metadata);
 
+// The PNG that write() makes of a picture: c/(c+1), sRGB.
+std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata);
+
 } // namespace image

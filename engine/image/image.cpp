@@ -51,16 +51,6 @@ double undoReinhard(double encoded)
     return mapped / (1 - mapped);
 }
 
-std::vector<std::byte> encodeTonemapped(const Image& image, Metadata metadata)
-{
-    std::vector<uint8_t> rgb;
-    rgb.reserve(3 * image.pixels.size());
-    for (const glm::vec3& pixel : image.pixels)
-        for (int c = 0; c < 3; ++c) rgb.push_back(tonemap(pixel[c]));
-    metadata.push_back(TONEMAPPED);
-    return encodePng(image.width, image.height, rgb, metadata);
-}
-
 template <class Sample>
 Image linearFrom(const Raster<Sample>& raster, bool tonemapped)
 {
@@ -77,6 +67,16 @@ Image linearFrom(const Raster<Sample>& raster, bool tonemapped)
 }
 
 } // namespace
+
+std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata)
+{
+    std::vector<uint8_t> rgb;
+    rgb.reserve(3 * image.pixels.size());
+    for (const glm::vec3& pixel : image.pixels)
+        for (int c = 0; c < 3; ++c) rgb.push_back(tonemap(pixel[c]));
+    metadata.push_back(TONEMAPPED);
+    return encodePng(image.width, image.height, rgb, metadata);
+}
 
 void requireWritable(const std::filesystem::path& path)
 {
@@ -96,7 +96,7 @@ void write(const std::filesystem::path& path, const Image& image, const Metadata
     CHECK_EQ(image.pixels.size(), size_t{image.width} * image.height);
     requireWritable(path);
     const bool exr = extensionOf(path) == ".exr";
-    files::writeAtomically(path, exr ? encodeExr(image, metadata) : encodeTonemapped(image, metadata));
+    files::writeAtomically(path, exr ? encodeExr(image, metadata) : tonemappedPng(image, metadata));
 }
 
 Loaded read(const std::filesystem::path& path)

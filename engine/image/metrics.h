@@ -12,6 +12,7 @@ struct Metrics {
     double mape = 0;                   // |x - r| / (|r| + RELATIVE_EPSILON)
     double psnr = 0;                   // dB, peak 1, of c/(c+1); infinite for equal pictures
     double ssim = 0;                   // of c/(c+1): Wang et al. 2004, 11x11 Gaussian, sigma 1.5, K 0.01 and 0.03, L 1
+    double flip = 0;                   // of c/(c+1): engine/image/flip.h
     double lumaMse = 0, chromaMse = 0; // of YCoCg: (Y)^2; (Co)^2 + (Cg)^2
     glm::dvec3 meanRatio = glm::dvec3(1); // sum of the picture over sum of the reference
 };

@@ -29,7 +29,7 @@ bool isIn(const std::vector<std::string>& words, const std::string& word)
 
 Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter)
 {
-    if (arguments.size() > 1 && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
+    if (arguments.size() > 1 && arguments[0] != "compare" && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
         arguments.insert(arguments.end(), {"--device", deviceName()});
     return runProgram(executable(), {.arguments = std::move(arguments), .interruptAfter = interruptAfter});
 }

@@ -8,6 +8,7 @@ std::span<const Command> commands()
     static const Command COMMANDS[] = {
         {"render", "Renders a scene to a picture, without a window.", setUpRender},
         {"view", "Opens the window: a scene, every setting live.", setUpView},
+        {"compare", "Error figures and difference pictures of pictures; with limits, a gate.", setUpCompare},
         {"info", "Devices and their limits; or what a scene holds, and what is compiled for it.", setUpInfo},
     };
     return COMMANDS;

@@ -126,9 +126,13 @@ void Page::provenance(const Provenance& provenance)
         body_ +=
             "<p class=\"partial\">Partial: the run was stopped before its end; the figures are of what it did.</p>\n";
     const auto now = fmt::gmtime(std::chrono::system_clock::now());
-    body_ += fmt::format("<p>Scene <b>{}</b> on {} ({}); Trichrome {}, {:%Y-%m-%d %H:%M} UTC.</p>\n<pre>{}</pre>\n",
-                         escapeHtml(provenance.scene), escapeHtml(provenance.device), escapeHtml(provenance.driver),
-                         version(), now, escapeHtml(provenance.command));
+    const std::string where = provenance.scene.empty()
+                                  ? ""
+                                  : fmt::format("Scene <b>{}</b> on {} ({}); ", escapeHtml(provenance.scene),
+                                                escapeHtml(provenance.device), escapeHtml(provenance.driver));
+    body_ += fmt::format("<p>{}Trichrome {}, {:%Y-%m-%d %H:%M} UTC.</p>\n<pre>{}</pre>\n", where, version(), now,
+                         escapeHtml(provenance.command));
+    if (provenance.settings.empty()) return;
     body_ += "<details><summary>All settings</summary>\n";
     std::vector<std::vector<std::string>> rows;
     for (const auto& [name, value] : provenance.settings) rows.push_back({name, value});
@@ -145,7 +149,9 @@ std::string Page::html() const
 {
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n"
+        "<meta name=\"viewport\" content=\"width=device-width\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+        "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n"
         "</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n</html>\n",
         escapeHtml(title_), STYLE, body_);
 }

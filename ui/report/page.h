@@ -1,5 +1,6 @@
 #pragma once
-// A report as one HTML file that needs nothing else: style, plots and pictures are inside, so it works offline.
+// A report as one HTML file that needs nothing else: style, plots and pictures are inside, so it works offline. Its
+// content security policy keeps it from loading anything.
 
 #include <cstddef>
 #include <span>
@@ -21,7 +22,7 @@ std::string pngAddress(std::span<const std::byte> png);
 // Where figures come from, for whoever wants them again.
 struct Provenance {
     std::string command; // the line that reproduces them
-    std::string scene;
+    std::string scene;   // empty: nothing was rendered
     std::string device, driver;
     std::vector<std::pair<std::string, std::string>> settings; // passes::toText, and what else decides the figures
     bool partial = false;                                      // stopped before the end

@@ -1,15 +1,19 @@
-// Error figures against closed forms on pictures of one color, and SSIM against sums over each window in two
-// dimensions.
+// Error figures against closed forms on pictures of one color; SSIM against sums over each window in two dimensions;
+// PSNR, SSIM and FLIP against other implementations (metrics_reference.py).
 
 #include "engine/image/metrics.h"
 
 #include "engine/base/error.h"
+#include "engine/image/flip.h"
 
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -66,7 +70,74 @@ double ssimByDefinition(const image::Image& a, const image::Image& b)
     return total / windows;
 }
 
+// The pairs of metrics_reference.py, formula for formula.
+using Color = std::function<double(int x, int y, int c)>;
+constexpr int PAIR_WIDTH = 61, PAIR_HEIGHT = 47;
+
+uint32_t hashed(int x, int y, int c, uint32_t seed)
+{
+    uint64_t h = uint64_t(x) * 73856093 ^ uint64_t(y) * 19349663 ^ uint64_t(c) * 83492791 ^ seed * uint64_t{2654435761};
+    h = (h ^ h >> 13) * 1274126177;
+    return uint32_t(h) >> 24;
+}
+
+double waves(int x, int y, int c)
+{
+    return 1 + std::sin(0.3 * x + c) * std::cos(0.2 * y);
+}
+
+double noisyWaves(int x, int y, int c)
+{
+    return waves(x, y, c) + hashed(x, y, c, 1) / 512.0;
+}
+
+double bars(int x, int y, int c)
+{
+    return (x / 7 + y / 5 + c) % 3 == 0 ? 4 : 0.0625;
+}
+
+double movedBars(int x, int y, int c)
+{
+    return bars(x + 1, y, c) * (c == 0 ? 1.25 : 1);
+}
+
+double lights(int x, int y, int c)
+{
+    return 0.25 + (hashed(x, y, 0, 3) > 250 ? 64 : 0) + (c == x * 3 / PAIR_WIDTH ? 0.5 : 0);
+}
+
+double dimmedLights(int x, int y, int c)
+{
+    return std::min(lights(x, y, 2 - c), 4.0);
+}
+
+image::Image picture(const Color& color)
+{
+    image::Image result = flat(PAIR_WIDTH, PAIR_HEIGHT, {});
+    for (int y = 0; y < PAIR_HEIGHT; ++y)
+        for (int x = 0; x < PAIR_WIDTH; ++x)
+            for (int c = 0; c < 3; ++c) result.at(uint32_t(x), uint32_t(y))[c] = float(color(x, y, c));
+    return result;
+}
+
 } // namespace
+
+TEST(Metrics, AgreeWithOtherImplementationsOnThreePairs)
+{
+    const std::map<std::string, std::pair<Color, Color>> pairs = {
+        {"noise on waves", {waves, noisyWaves}},
+        {"bars moved by a pixel, reddened", {bars, movedBars}},
+        {"lights gone, channels swapped", {lights, dimmedLights}}};
+    std::ifstream file(TRICHROME_SOURCE_DIR "/tests/engine/image/metrics_reference.json");
+    const nlohmann::json expected = nlohmann::json::parse(file);
+    ASSERT_EQ(expected.size(), pairs.size());
+    for (const auto& [name, pair] : pairs) {
+        const image::Metrics m = image::measure(picture(pair.first), picture(pair.second));
+        EXPECT_NEAR(m.psnr, expected[name]["psnr"].get<double>(), 1e-5) << name;
+        EXPECT_NEAR(m.ssim, expected[name]["ssim"].get<double>(), 1e-6) << name;
+        EXPECT_NEAR(m.flip, expected[name]["flip"].get<double>(), 1e-6) << name;
+    }
+}
 
 TEST(Metrics, OfPicturesOfOneColorAreTheClosedForms)
 {
@@ -88,6 +159,7 @@ TEST(Metrics, OfEqualPicturesAreExact)
         const image::Metrics m = image::measure(picture, picture);
         EXPECT_EQ(m.mse, 0);
         EXPECT_EQ(m.psnr, std::numeric_limits<double>::infinity());
+        EXPECT_EQ(m.flip, 0);
         EXPECT_NEAR(m.ssim, 1, 1e-12);
         EXPECT_EQ(m.meanRatio, glm::dvec3(1));
     }
@@ -99,6 +171,26 @@ TEST(Metrics, SsimIsItsDefinitionOnThreePairs)
         const image::Image a = noisy(1, 0), b = noisy(2, noise);
         EXPECT_NEAR(image::measure(a, b).ssim, ssimByDefinition(a, b), 1e-9) << noise;
     }
+}
+
+// What the metric is made to be: 1 for the two colors that differ most, and the same whichever picture is first.
+TEST(Metrics, FlipIsLargestForGreenAgainstBlue)
+{
+    const float white = std::numeric_limits<float>::max(); // c/(c+1) is 1
+    EXPECT_NEAR(image::measure(flat(40, 30, {0, white, 0}), flat(40, 30, {0, 0, white})).flip, 1, 1e-6);
+    EXPECT_LT(image::measure(flat(40, 30, {0, 0, 0}), flat(40, 30, {white, white, white})).flip, 0.99);
+    EXPECT_EQ(image::measure(picture(bars), picture(movedBars)).flip,
+              image::measure(picture(movedBars), picture(bars)).flip);
+}
+
+TEST(Metrics, FlipErrorsLieWhereThePicturesDiffer)
+{
+    image::Image changed = picture(waves);
+    changed.at(30, 20) = {50, 0, 0};
+    const image::Plane errors = image::flipErrors(picture(waves), changed);
+    const auto most = std::max_element(errors.values.begin(), errors.values.end()) - errors.values.begin();
+    EXPECT_EQ(most, 20 * PAIR_WIDTH + 30);
+    EXPECT_EQ(errors.values[0], 0);
 }
 
 TEST(Metrics, RefuseOtherSizesAndValuesThatAreNotFinite)

@@ -1,0 +1,30 @@
+#pragma once
+// One channel of a picture in float64, for figures that look at neighborhoods.
+
+#include <span>
+#include <vector>
+
+#include "engine/image/image.h"
+
+namespace image
+{
+
+struct Plane {
+    int width = 0, height = 0;
+    std::vector<double> values; // row 0 at the top
+};
+
+// c/(c+1) of one channel; values below 0 count as 0.
+Plane tonemapped(const Image& picture, int channel);
+
+// The sum over the window of kernel times pixel: columns of it `alongX`, rows `alongY`, both of odd size and about the
+// pixel. Outside the picture its edge goes on.
+Plane filtered(const Plane& plane, std::span<const double> alongX, std::span<const double> alongY);
+
+// exp(-x^2 / (2 sigma^2)) at x = -radius .. radius.
+std::vector<double> gaussian(double sigma, int radius);
+
+// Throws Error: other sizes, no pixels, a value that is not finite.
+void requireComparable(const Image& reference, const Image& picture);
+
+} // namespace image

@@ -1,0 +1,24 @@
+#pragma once
+// Numbers per pixel as colors.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "engine/image/plane.h"
+
+namespace ui
+{
+
+enum class ColorMap {
+    Magma,  // dark to bright: sizes
+    BlueRed // blue, white, red: less, equal, more
+};
+
+// PNG bytes; values below `low` and above `high` get the end colors.
+std::vector<std::byte> heatMapPng(const image::Plane& plane, double low, double high, ColorMap map);
+
+// The same colors as a bar between two labels, in HTML.
+std::string colorBar(ColorMap map, const std::string& lowLabel, const std::string& highLabel);
+
+} // namespace ui
