@@ -1,14 +1,10 @@
 // Would the agreement tests notice? Each of these errors, planted in the shaders' text and compiled at run time, must
-// be found.
+// be found. More of them, in resampling itself, are planted in tests/shaders/toy.
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-
 #include "tests/support/gpu_fixture.h"
+#include "tests/support/planted_shaders.h"
 #include "tests/support/restir_cases.h"
 
 namespace support
@@ -16,7 +12,6 @@ namespace support
 namespace
 {
 
-namespace fs = std::filesystem;
 using enum passes::Method;
 using enum passes::Shift;
 using enum Reuse;
@@ -49,39 +44,7 @@ const PlantedError ERRORS[] = {
      "trunk.arrival * trunk.departure;",
      "trunk.arrival;",
      {"Room", RgbRestir, Hybrid, Temporal, true, 8}},
-    {"SwappedTemporalMis",
-     "restir/reservoir.glsl",
-     "here.weightSum * rest(historyConfidence, rho, confidence);",
-     "here.weightSum * rest(confidence, rho, historyConfidence);",
-     {"Lambert", RgbRestir, Replay, Temporal, true, 8}},
-    {"SwappedSpatialMis",
-     "spatial_gather.comp",
-     "part * share(neighborConfidence, words.w, confidence);",
-     "part * share(confidence, words.w, neighborConfidence);",
-     {"Lambert", RgbRestir, Replay, Spatial, false, 8}},
-    {"SpatialConfidenceOffByOne",
-     "spatial_gather.comp",
-     "share(confidence, a, neighborConfidence);",
-     "share(confidence, a, neighborConfidence + 1.0);",
-     {"Lambert", RgbRestir, Replay, Spatial, false, 8}},
-    {"StaleTarget",
-     "temporal.comp",
-     "r[c].f = fHere[c];",
-     "r[c].f = old[c].f;",
-     {"Lambert", RgbRestir, Replay, Temporal, true, 64}},
-    {"EmptyHistoryForgotten",
-     "temporal.comp",
-     "if (historyConfidence == 0u ||",
-     "if (loadHistoryHead(previousPixel, 0u).weightSum == 0.0 || historyConfidence == 0u ||",
-     {"ManyLamps", RgbRestir, Replay, Temporal, true, 64}},
 };
-
-std::string textOf(const fs::path& path)
-{
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 class RestirPlantedErrors : public GpuTest, public testing::WithParamInterface<PlantedError>
 {
@@ -90,20 +53,12 @@ class RestirPlantedErrors : public GpuTest, public testing::WithParamInterface<P
 TEST_P(RestirPlantedErrors, AreFound)
 {
     const PlantedError& error = GetParam();
-    const fs::path folder = fs::path(testing::TempDir()) / ("planted_" + std::string(error.name));
-    fs::remove_all(folder);
-    fs::copy(TRICHROME_SOURCE_DIR "/shaders", folder, fs::copy_options::recursive);
-    std::string text = textOf(folder / error.file);
-    const size_t at = text.find(error.right);
-    ASSERT_NE(at, std::string::npos) << "the text to replace is gone from " << error.file;
-    text.replace(at, std::string(error.right).size(), error.wrong);
-    std::ofstream(folder / error.file) << text;
-
-    gpu::Device planted = openDevice({.shaderDirectory = folder.string()});
+    PlantedShaders shaders(error.name);
+    ASSERT_NO_FATAL_FAILURE(shaders.plant(error.file, error.right, error.wrong));
+    gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
     const TileVerdict verdict = error.test.verdict(planted);
     EXPECT_FALSE(verdict.passes) << verdict.summary;
     std::printf("%s: %s\n", error.name, verdict.summary.c_str());
-    fs::remove_all(folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, RestirPlantedErrors, testing::ValuesIn(ERRORS),

@@ -1,0 +1,113 @@
+// The real stages canonical, temporal, spatial_trace and spatial_gather, on integrals known in closed form: the means
+// are the integrals, whatever the estimator, the shift, the reuse, the motion and M_c.
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/support/gpu_fixture.h"
+#include "tests/support/toy_world.h"
+
+namespace support
+{
+namespace
+{
+
+using passes::Shift;
+
+constexpr Shift SHIFTS[] = {Shift::Replay, Shift::Reconnection, Shift::Hybrid};
+
+// Those that ship, and one with as many reservoirs as fit: every channel is estimated twice.
+std::vector<passes::Estimator> allEstimators()
+{
+    std::vector<passes::Estimator> list = passes::estimators();
+    const glm::vec3 red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1), all(1, 1, 1);
+    list.push_back({.name = "four",
+                    .target = {red, green, blue, all},
+                    .resolve = {0.5f * red, 0.5f * green, 0.5f * blue, 0.5f * all}});
+    return list;
+}
+
+struct Row {
+    passes::Estimator estimator;
+    Shift shift;
+
+    std::string name() const
+    {
+        constexpr const char* NAMES[] = {"Replay", "Reconnection", "Hybrid"};
+        std::string name = estimator.name + NAMES[size_t(shift)];
+        std::erase(name, '-');
+        return name;
+    }
+};
+void PrintTo(const Row& row, std::ostream* os)
+{
+    *os << row.name();
+}
+
+std::vector<Row> rows()
+{
+    std::vector<Row> list;
+    for (const passes::Estimator& estimator : allEstimators())
+        for (const Shift shift : SHIFTS) list.push_back({estimator, shift});
+    return list;
+}
+
+class ToyIntegrals : public GpuTest, public testing::WithParamInterface<Row>
+{
+};
+
+// Some of everything; with TRICHROME_TEST_MATRIX set everything with everything, known to a fraction of a percent.
+struct Plan {
+    std::vector<ToyCase> cases;
+    uint32_t runs = 64;
+    double margin = 0.1;
+};
+
+Plan plan()
+{
+    using enum Reuse;
+    if (std::getenv("TRICHROME_TEST_MATRIX") == nullptr)
+        return {.cases = {{Temporal, true, 8}, {Spatial, true, 1}, {Both, false, 4096}, {Both, true, 8}}};
+    Plan all{.cases = {}, .runs = 4096, .margin = 0.01};
+    for (const bool moves : {false, true}) {
+        all.cases.push_back({Spatial, moves, 1}); // M_c limits history alone
+        for (const Reuse reuse : {Temporal, Both})
+            for (const uint32_t limit : {1u, 8u, 64u, 4096u}) all.cases.push_back({reuse, moves, limit});
+    }
+    return all;
+}
+
+TEST_P(ToyIntegrals, AreTheMeans)
+{
+    const Plan asked = plan();
+    const double level = 1e-3 / double(2 * rows().size() * asked.cases.size()); // two tests each, 1e-3 for all of them
+    ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs);
+    for (const ToyCase& c : asked.cases) {
+        const TileVerdict verdict = renderer.verdict(c, level, asked.margin);
+        EXPECT_TRUE(verdict.passes) << c.name() << "\n" << verdict.summary;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ToyIntegrals, testing::ValuesIn(rows()), [](const auto& i) { return i.param.name(); });
+
+using ToyWorld = GpuTest;
+
+// What leaving out the shifts of a resting camera changes: nothing.
+TEST_F(ToyWorld, NeedsNoShiftsAtRest)
+{
+    for (const Shift shift : {Shift::Replay, Shift::Hybrid}) { // reconnection moves not every path, not even home
+        ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", allEstimators().back(), shift, 8);
+        const ToyCase resting = {.reuse = Reuse::Both, .maxConfidence = 64};
+        const std::vector<image::Image> without = renderer.render(resting, true),
+                                        with = renderer.render(resting, false);
+        size_t different = 0, compared = 0;
+        for (size_t run = 0; run < with.size(); ++run)
+            for (size_t i = 0; i < with[run].pixels.size(); ++i, ++compared)
+                for (int c = 0; c < 3; ++c)
+                    different += !(std::abs(with[run].pixels[i][c] - without[run].pixels[i][c]) <= 2e-6f);
+        EXPECT_LE(different, compared / 1000);
+    }
+}
+
+} // namespace
+} // namespace support
