@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <limits>
 
 namespace passes
 {
@@ -25,9 +24,9 @@ double deviceSecondsOf(const RenderStats& stats, uint64_t frames)
 
 } // namespace
 
-bool isCheckpoint(uint64_t frames)
+bool isCheckpoint(uint64_t frames, bool moving)
 {
-    return std::has_single_bit(frames) || (frames % 3 == 0 && std::has_single_bit(frames / 3));
+    return std::has_single_bit(frames) || (!moving && frames % 3 == 0 && std::has_single_bit(frames / 3));
 }
 
 Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, CameraAt cameraAt,
@@ -35,9 +34,10 @@ Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Set
     : cameraAt_(std::move(cameraAt)), limits_(limits)
 {
     CHECK(!methods.empty());
+    CHECK(!cameraAt_ || limits_.frames > 0); // each measured frame of a moving camera has a reference of its own
     for (const Settings& settings : methods)
         runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings, bvhProgress)
-                                         : std::make_unique<Renderer>(renderer(), settings)});
+                                             : std::make_unique<Renderer>(renderer(), settings)});
     for (Runner& runner : runners_) {
         for (const uint64_t frame : WARM_UP) {
             if (cameraAt_) runner.renderer->setCamera(cameraAt_(frame));
@@ -104,13 +104,12 @@ bool Race::slice(Runner& runner)
     do {
         if (cameraAt_) renderer.setCamera(cameraAt_(renderer.frameCount()));
         renderer.renderFrame();
-        checkpoint = isCheckpoint(renderer.frameCount());
+        checkpoint = isCheckpoint(renderer.frameCount(), cameraAt_ != nullptr);
     } while (!checkpoint && !atEnd() && elapsed() < limits_.sliceSeconds);
     renderer.wait();
     runner.wallSeconds += elapsed();
     runner.done = atEnd() || (limits_.frames == 0 && runner.wallSeconds >= limits_.seconds);
-    // A moving camera's last frame is measured only where all methods and repeats have it, and so one reference.
-    return checkpoint || (runner.done && (!cameraAt_ || limits_.frames > 0));
+    return checkpoint || runner.done;
 }
 
 // False when there was no reference: stopped.
@@ -128,7 +127,6 @@ bool Race::measure(uint32_t method, References& references, Repeat& repeat)
     const auto add = [&](bool average, const image::Image& picture) {
         sample.average = average;
         sample.error = image::without(reference->error, image::measure(reference->picture, picture));
-        sample.flip = std::numeric_limits<double>::quiet_NaN(); // not measured yet
         repeat.samples.push_back(sample);
     };
     if (!cameraAt_) add(true, renderer.readMean());

@@ -21,24 +21,24 @@ struct Sample {
     double deviceSeconds = 0; // of this method's own frames, by the device's clock; 0 where it has none
     double wallSeconds = 0;   // of this method's own slices
     image::Metrics error;
-    double flip = 0;
 };
 
 struct Repeat {
-    std::vector<Sample> samples;     // by time
+    std::vector<Sample> samples;      // by time
     std::vector<image::Image> finals; // each method's last picture: the mean, or with a moving camera the last frame
-    uint64_t nonFinite = 0;          // values counted in all stages of all methods
-    bool complete = false;           // false: stopped before its end
+    uint64_t nonFinite = 0;           // values counted in all stages of all methods
+    bool complete = false;            // false: stopped before its end
 };
 
-// When to measure: after 1, 2, 3, 4, 6, 8, 12, 16... frames.
-bool isCheckpoint(uint64_t frames);
+// When to measure: after 1, 2, 3, 4, 6, 8, 12, 16... frames, or with a moving camera, where each needs a reference of
+// its own, after 1, 2, 4, 8...
+bool isCheckpoint(uint64_t frames, bool moving);
 
 class Race
 {
   public:
     struct Limits {
-        uint64_t frames = 0;       // of each method; 0: by time
+        uint64_t frames = 0;       // of each method; 0: by time, for resting cameras only
         double seconds = 0;        // of each method, wall
         double sliceSeconds = 0.1; // one turn
     };
@@ -60,7 +60,7 @@ class Race
         bool done = false;
     };
     void prepare(uint64_t seed);
-    bool slice(Runner& runner); // true at a checkpoint
+    bool slice(Runner& runner); // true when it is time to measure
     bool measure(uint32_t method, References& references, Repeat& repeat);
     double doneOf(const Runner& runner) const;
 

@@ -126,8 +126,7 @@ std::vector<double> RaceFigures::timesTo(Lane lane, Figure figure, double error)
 std::vector<double> RaceFigures::slopes(Lane lane, Figure figure) const
 {
     std::vector<double> values;
-    for (size_t r = 0; r < repeats(); ++r)
-        values.push_back(statistics::slopeOf(curve(r, lane, figure)).value_or(NONE));
+    for (size_t r = 0; r < repeats(); ++r) values.push_back(statistics::slopeOf(curve(r, lane, figure)).value_or(NONE));
     return values;
 }
 

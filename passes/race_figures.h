@@ -1,6 +1,6 @@
 #pragma once
-// What the repeats of a race say: curves, errors at equal time and equal frames, times to an error, slopes, all kept per
-// repeat, so that methods are compared within repeats.
+// What the repeats of a race say: curves, errors at equal time and equal frames, times to an error, slopes, all kept
+// per repeat, so that methods are compared within repeats.
 
 #include <span>
 #include <vector>
@@ -32,9 +32,9 @@ class RaceFigures
     std::vector<const Sample*> samples(size_t repeat, Lane lane) const;
     statistics::ErrorCurve curve(size_t repeat, Lane lane, Figure figure) const;
 
-    double commonSeconds(std::span<const Lane> lanes) const;   // that all lanes reach in all repeats; 0: none
-    uint64_t commonFrames(std::span<const Lane> lanes) const;  // the most that all lanes were measured after; 0: none
-    std::vector<uint64_t> framesOf(Lane lane) const;           // measured after, in all repeats
+    double commonSeconds(std::span<const Lane> lanes) const;  // that all lanes reach in all repeats; 0: none
+    uint64_t commonFrames(std::span<const Lane> lanes) const; // the most that all lanes were measured after; 0: none
+    std::vector<uint64_t> framesOf(Lane lane) const;          // measured after, in all repeats
 
     // One value per repeat; NaN where a repeat has none.
     std::vector<double> at(Lane lane, Figure figure, double seconds) const; // of errors: between points by logarithms
@@ -49,7 +49,7 @@ class RaceFigures
     bool deviceClock_ = true;
 };
 
-bool allAboveZero(std::span<const double> values); // and numbers: logarithms can be taken
+bool allAboveZero(std::span<const double> values);   // and numbers: logarithms can be taken
 double finiteMedian(std::span<const double> values); // of those that are numbers; NaN when none is
 
 } // namespace passes

@@ -1,10 +1,10 @@
 #include "passes/reference.h"
 
 #include "engine/base/error.h"
+#include "engine/base/hash.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 namespace passes
@@ -16,13 +16,6 @@ namespace
 // Of a reference's mean; from as many its precision is estimated.
 constexpr uint64_t BATCHES = 16, LONGEST_BATCH = 64;
 constexpr uint64_t FIRST_CHECK = 8; // batches before the precision is believed
-
-// FNV-1a, 64 bits.
-uint64_t hashOf(uint64_t state, std::span<const std::byte> bytes)
-{
-    for (const std::byte byte : bytes) state = (state ^ uint64_t(byte)) * 1099511628211ull;
-    return state;
-}
 
 struct Figure {
     const char* name;
@@ -38,7 +31,8 @@ image::Metadata metadataOf(const Reference& reference, const std::string& key)
     image::Metadata metadata = {{"reference-key", key},
                                 {"frames-done", std::to_string(reference.pathTraced)},
                                 {"precise", reference.precise ? "yes" : "no"}};
-    for (const Figure& figure : FIGURES) metadata.emplace_back(figure.name, fmt::format("{}", reference.error.*figure.field));
+    for (const Figure& figure : FIGURES)
+        metadata.emplace_back(figure.name, fmt::format("{}", reference.error.*figure.field));
     return metadata;
 }
 
@@ -110,10 +104,9 @@ const Reference* References::after(uint64_t frames)
     if (cameraAt_) renderer_->setCamera(cameraAt_(frames - 1));
     traceBatch(0, 1);
     const std::vector<glm::vec3> fingerprint = renderer_->readMean().pixels;
-    uint64_t state = 14695981039346656037ull;
-    const std::string text = fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
-    state = hashOf(state, std::as_bytes(std::span(text)));
-    const std::string key = fmt::format("{:016x}", hashOf(state, std::as_bytes(std::span(fingerprint))));
+    const std::string text =
+        fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
+    const std::string key = fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(fingerprint)), fnv1a(text)));
 
     const std::filesystem::path file = options_.cache / (key + ".exr");
     std::optional<Reference> reference;
@@ -156,7 +149,8 @@ std::optional<Reference> References::trace()
         if (mean.count() < 2) continue;
         reference.error = mean.ownError();
         const double cost = double(reference.pathTraced) / double(options_.precision.maxFrames);
-        options_.progress(std::min(1.0, std::max(cost, reference.error.relmse > 0 ? wanted / reference.error.relmse : 1)));
+        options_.progress(
+            std::min(1.0, std::max(cost, reference.error.relmse > 0 ? wanted / reference.error.relmse : 1)));
     }
     reference.precise = reached();
     reference.picture = mean.mean();

@@ -1,5 +1,6 @@
 #pragma once
-// What errors are measured against: a picture from a file, or one path traced to a stated precision and kept in a cache.
+// What errors are measured against: a picture from a file, or one path traced to a stated precision and kept in a
+// cache.
 
 #include <filesystem>
 #include <functional>
@@ -16,15 +17,15 @@ namespace passes
 
 struct Reference {
     image::Image picture;
-    image::OwnError error;      // its own; 0 where it is not known (a file)
-    uint64_t pathTraced = 0;    // frames; 0: from a file
-    bool precise = true;        // as precise as asked for
+    image::OwnError error;   // its own; 0 where it is not known (a file)
+    uint64_t pathTraced = 0; // frames; 0: from a file
+    bool precise = true;     // as precise as asked for
     bool fromCache = false;
 };
 
 // How good a path traced reference has to be.
 struct Precision {
-    double error = 0.02;       // square root of its own relative MSE
+    double error = 0.02;        // square root of its own relative MSE
     uint64_t maxFrames = 16384; // and what it may cost at most
 };
 

@@ -32,8 +32,7 @@ std::string factorText(const Factor& factor)
 std::string joined(const std::vector<std::string>& parts)
 {
     std::string text;
-    for (size_t i = 0; i < parts.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
     return text;
 }
 
@@ -153,8 +152,8 @@ std::string verdict(std::span<const Contender> contenders, const std::string& er
     const std::string sure = fmt::format("(intervals at {:g}% for all together, paired over {} repeats)", 100 * level,
                                          contenders.front().errors.size());
     if (equals.empty()) return fmt::format("{} {} has the least {}: {} {}.", where, best, error, joined(losers), sure);
-    const std::string tied = fmt::format("{} {} and {} cannot be told apart by their {}", where, best,
-                                         joined(equals), error);
+    const std::string tied =
+        fmt::format("{} {} and {} cannot be told apart by their {}", where, best, joined(equals), error);
     if (losers.empty()) return fmt::format("{} {}.", tied, sure);
     return fmt::format("{}; {} has {} {}.", tied, best, joined(losers), sure);
 }

@@ -7,8 +7,8 @@
 namespace image
 {
 
-// What a reference's own noise adds to the errors that are measured against it: E[(x - r)^2] = E[(x - truth)^2] + v, for
-// x independent of r. Mean variances, each weighted as the figure in Metrics of the same name.
+// What a reference's own noise adds to the errors that are measured against it: E[(x - r)^2] = E[(x - truth)^2] + v,
+// for x independent of r. Mean variances, each weighted as the figure in Metrics of the same name.
 struct OwnError {
     double mse = 0, relmse = 0, lumaMse = 0, chromaMse = 0;
 };

@@ -30,7 +30,7 @@ void visitFigures(AnySample& s, Visitor&& visit)
 {
     for (auto* figure : {&s.deviceSeconds, &s.wallSeconds, &s.error.mse, &s.error.relmse, &s.error.mape, &s.error.psnr,
                          &s.error.ssim, &s.error.lumaMse, &s.error.chromaMse, &s.error.meanRatio.r,
-                         &s.error.meanRatio.g, &s.error.meanRatio.b, &s.flip})
+                         &s.error.meanRatio.g, &s.error.meanRatio.b, &s.error.flip})
         visit(*figure);
 }
 
@@ -43,9 +43,8 @@ Json jsonOf(const passes::Sample& sample)
 
 passes::Sample sampleOf(const Json& row, size_t methods)
 {
-    passes::Sample sample{.method = row.at(0).get<uint32_t>(),
-                          .average = row.at(1).get<bool>(),
-                          .frames = row.at(2).get<uint64_t>()};
+    passes::Sample sample{
+        .method = row.at(0).get<uint32_t>(), .average = row.at(1).get<bool>(), .frames = row.at(2).get<uint64_t>()};
     if (sample.method >= methods) throw Error("It names a method {} of {}.", sample.method, methods);
     size_t column = 3;
     visitFigures(sample, [&](double& value) { value = std::stod(row.at(column++).get<std::string>()); });
