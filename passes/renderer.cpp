@@ -61,7 +61,7 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
     const auto start = std::chrono::steady_clock::now();
     const scene::SceneTables tables =
         scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress, featureSet);
-    scene_ = std::make_unique<scene::GpuScene>(device, tables);
+    scene_ = std::make_shared<scene::GpuScene>(device, tables);
     stats_.bvhSeconds = tables.bvh.stats.buildSeconds;
     stats_.tablesSeconds = secondsSince(start) - stats_.bvhSeconds;
     stats_.bvh = tables.bvh.stats;
@@ -73,6 +73,19 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
+    createStages();
+}
+
+Renderer::Renderer(const Renderer& sharing, const Settings& settings)
+    : device_(sharing.device_), settings_(settings), featureSet_(sharing.featureSet_), runs_(1),
+      sceneFeatures_(sharing.sceneFeatures_), orthographic_(sharing.orthographic_), lengthScale_(sharing.lengthScale_),
+      radianceScale_(sharing.radianceScale_), stats_(sharing.stats_), scene_(sharing.scene_)
+{
+    CHECK(settings.camera == sharing.settings_.camera);
+    CHECK(settings.environment == sharing.settings_.environment);
+    CHECK(settings.environmentScale == sharing.settings_.environmentScale);
+    createBuffers();
+    frame_.camera = frame_.previousCamera = sharing.frame_.camera;
     createStages();
 }
 

@@ -48,6 +48,9 @@ class Renderer
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
+    // Renders the scene of `sharing` with other settings; both use the same tables on the device, so that methods can
+    // be compared in turns without building and keeping them twice. Camera and environment must be the same.
+    Renderer(const Renderer& sharing, const Settings& settings);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
@@ -93,7 +96,7 @@ class Renderer
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
-    std::unique_ptr<scene::GpuScene> scene_;
+    std::shared_ptr<const scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;
     std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,

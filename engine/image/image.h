@@ -1,6 +1,7 @@
 #pragma once
 // Float RGB pictures and their files.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -27,6 +28,9 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 // EXR: float32 R, G, B, ZIP. PNG: 8 bit, Reinhard c/(c+1) per channel then sRGB. By extension; written whole or not at
 // all. Throws Error: other extension, cannot write.
 void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata);
+
+// The bytes that write() puts into a PNG file.
+std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata);
 
 // Throws the Error that write() would for this name: to be asked before hours of rendering.
 void requireWritable(const std::filesystem::path& path);

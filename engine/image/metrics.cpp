@@ -65,9 +65,9 @@ Metrics measure(const Image& reference, const Image& picture)
             result.relmse += d[c] * d[c] / (r[c] * r[c] + RELATIVE_EPSILON) / (3 * pixels);
             result.mape += std::abs(d[c]) / (std::abs(r[c]) + RELATIVE_EPSILON) / (3 * pixels);
         }
-        const double luma = d.r / 4 + d.g / 2 + d.b / 4, orange = (d.r - d.b) / 2, green = d.g / 2 - (d.r + d.b) / 4;
-        result.lumaMse += luma * luma / pixels;
-        result.chromaMse += (orange * orange + green * green) / pixels;
+        const glm::dvec3 split = yCoCg(d);
+        result.lumaMse += split.x * split.x / pixels;
+        result.chromaMse += (split.y * split.y + split.z * split.z) / pixels;
     }
     double tonemappedMse = 0;
     for (int c = 0; c < 3; ++c) {

@@ -19,6 +19,12 @@ struct Metrics {
 
 constexpr double RELATIVE_EPSILON = 1e-2;
 
+// (Y, Co, Cg), without offsets: differences of pixels can be split as pixels can.
+inline glm::dvec3 yCoCg(const glm::dvec3& rgb)
+{
+    return {rgb.r / 4 + rgb.g / 2 + rgb.b / 4, (rgb.r - rgb.b) / 2, rgb.g / 2 - (rgb.r + rgb.b) / 4};
+}
+
 // Throws Error: other sizes, a value that is not finite. Values below 0 are tonemapped as 0.
 Metrics measure(const Image& reference, const Image& picture);
 

@@ -5,10 +5,7 @@
 namespace ui
 {
 
-namespace
-{
-
-// Where the XDG base directory specification wants caches; empty, and so no cache, when there is no home.
+// Where the XDG base directory specification wants it.
 std::string cacheDirectory()
 {
     const char* cache = std::getenv("XDG_CACHE_HOME");
@@ -16,8 +13,6 @@ std::string cacheDirectory()
     const char* home = std::getenv("HOME");
     return home && *home ? std::string(home) + "/.cache/trichrome" : "";
 }
-
-} // namespace
 
 void DeviceOptions::addTo(CLI::App& app)
 {

@@ -10,6 +10,9 @@
 namespace ui
 {
 
+// Where what can be made again is kept; empty, and so no cache, when there is no home.
+std::string cacheDirectory();
+
 class DeviceOptions
 {
   public:

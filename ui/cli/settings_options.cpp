@@ -32,6 +32,8 @@ std::string complaint(const std::string& name, const std::string& value)
     }
 }
 
+} // namespace
+
 void applyPreset(passes::Settings& settings, const std::string& file)
 {
     const std::vector<std::byte> bytes = files::read(file, MAX_PRESET_BYTES);
@@ -44,8 +46,6 @@ void applyPreset(passes::Settings& settings, const std::string& file)
         }
     });
 }
-
-} // namespace
 
 void SettingsOptions::addTo(CLI::App& app)
 {

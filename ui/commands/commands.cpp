@@ -9,6 +9,7 @@ std::span<const Command> commands()
         {"render", "Renders a scene to a picture, without a window.", setUpRender},
         {"view", "Opens the window: a scene, every setting live.", setUpView},
         {"compare", "Error figures and difference pictures of pictures; with limits, a gate.", setUpCompare},
+        {"converge", "Measures error against run time for several methods, as a page.", setUpConverge},
         {"info", "Devices and their limits; or what a scene holds, and what is compiled for it.", setUpInfo},
     };
     return COMMANDS;

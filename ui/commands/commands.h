@@ -20,6 +20,7 @@ struct Command {
 std::span<const Command> commands();
 
 Action setUpCompare(CLI::App& app);
+Action setUpConverge(CLI::App& app);
 Action setUpInfo(CLI::App& app);
 Action setUpRender(CLI::App& app);
 Action setUpView(CLI::App& app);

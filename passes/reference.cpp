@@ -1,0 +1,160 @@
+#include "passes/reference.h"
+
+#include "engine/base/error.h"
+#include "engine/base/hash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace passes
+{
+
+namespace
+{
+
+// Of a reference's mean; from as many its precision is estimated.
+constexpr uint64_t BATCHES = 16, LONGEST_BATCH = 64;
+constexpr uint64_t FIRST_CHECK = 8; // batches before the precision is believed
+
+struct Figure {
+    const char* name;
+    double image::OwnError::*field;
+};
+constexpr Figure FIGURES[] = {{"own-mse", &image::OwnError::mse},
+                              {"own-relmse", &image::OwnError::relmse},
+                              {"own-luma-mse", &image::OwnError::lumaMse},
+                              {"own-chroma-mse", &image::OwnError::chromaMse}};
+
+image::Metadata metadataOf(const Reference& reference, const std::string& key)
+{
+    image::Metadata metadata = {{"reference-key", key},
+                                {"frames-done", std::to_string(reference.pathTraced)},
+                                {"precise", reference.precise ? "yes" : "no"}};
+    for (const Figure& figure : FIGURES)
+        metadata.emplace_back(figure.name, fmt::format("{}", reference.error.*figure.field));
+    return metadata;
+}
+
+bool isFinite(const image::Image& picture)
+{
+    return std::ranges::all_of(picture.pixels, [](const glm::vec3& p) {
+        return std::isfinite(p.r) && std::isfinite(p.g) && std::isfinite(p.b);
+    });
+}
+
+// Nothing when the file is missing, damaged, or somebody else's: then it is made again.
+std::optional<Reference> readCached(const std::filesystem::path& file, const std::string& key, const Settings& settings)
+{
+    try {
+        const image::Loaded loaded = image::read(file);
+        const std::map<std::string, std::string> facts(loaded.metadata.begin(), loaded.metadata.end());
+        const image::Image& picture = loaded.image;
+        if (facts.at("reference-key") != key || picture.width != settings.width || picture.height != settings.height ||
+            !isFinite(picture))
+            return std::nullopt;
+        Reference reference{.picture = picture, .pathTraced = std::stoull(facts.at("frames-done")), .fromCache = true};
+        reference.precise = facts.at("precise") == "yes";
+        for (const Figure& figure : FIGURES) {
+            reference.error.*figure.field = std::stod(facts.at(figure.name));
+            if (!(reference.error.*figure.field >= 0)) return std::nullopt;
+        }
+        return reference;
+    } catch (const Error&) {
+        return std::nullopt;
+    } catch (const std::logic_error&) { // a fact is missing or no number
+        return std::nullopt;
+    }
+}
+
+} // namespace
+
+References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
+    : settings_(settings), cameraAt_(std::move(cameraAt)), options_(std::move(options))
+{
+    Settings traced; // what does not change the picture stays at its default, so that more finds it in the cache
+    traced.method = Method::Pt;
+    traced.maxBounces = settings.maxBounces;
+    traced.pixelFilter = settings.pixelFilter;
+    traced.width = settings.width;
+    traced.height = settings.height;
+    traced.camera = settings.camera;
+    traced.environment = settings.environment;
+    traced.environmentScale = settings.environmentScale;
+    traced.seed = ~settings.seed; // counting down from here, while repeats count up from theirs
+    settings_ = traced;
+    renderer_ = std::make_unique<Renderer>(sharing, settings_);
+}
+
+References::References(const std::filesystem::path& file, const Settings& settings) : settings_(settings)
+{
+    Reference reference{.picture = image::read(file).image};
+    const image::Image& picture = reference.picture;
+    if (picture.width != settings.width || picture.height != settings.height)
+        throw Error("Reference \"{}\" has {}x{} pixels, but --size is {}x{}.", file.string(), picture.width,
+                    picture.height, settings.width, settings.height);
+    if (!isFinite(picture)) throw Error("Reference \"{}\" has pixels that are not finite.", file.string());
+    made_.emplace(0, std::move(reference));
+}
+
+const Reference* References::after(uint64_t frames)
+{
+    const uint64_t index = cameraAt_ ? frames : 0;
+    if (const auto found = made_.find(index); found != made_.end()) return &found->second;
+    if (cameraAt_) renderer_->setCamera(cameraAt_(frames - 1));
+    traceBatch(0, 1);
+    const std::vector<glm::vec3> fingerprint = renderer_->readMean().pixels;
+    const std::string text =
+        fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
+    const std::string key = fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(fingerprint)), fnv1a(text)));
+
+    const std::filesystem::path file = options_.cache / (key + ".exr");
+    std::optional<Reference> reference;
+    if (!options_.cache.empty()) reference = readCached(file, key, settings_);
+    if (!reference) {
+        reference = trace();
+        if (!reference) return nullptr;
+        if (!options_.cache.empty()) {
+            std::error_code failure;
+            std::filesystem::create_directories(options_.cache, failure);
+            if (failure)
+                throw Error("Cannot create the cache folder \"{}\": {}.", options_.cache.string(), failure.message());
+            image::write(file, reference->picture, metadataOf(*reference, key));
+        }
+    }
+    return &made_.emplace(index, std::move(*reference)).first->second;
+}
+
+void References::traceBatch(uint64_t batch, uint64_t frames)
+{
+    Settings settings = settings_;
+    settings.seed -= batch;
+    renderer_->apply(settings);
+    renderer_->reset();
+    for (uint64_t frame = 0; frame < frames; ++frame) renderer_->renderFrame();
+}
+
+std::optional<Reference> References::trace()
+{
+    const uint64_t length = std::clamp<uint64_t>(options_.precision.maxFrames / BATCHES, 1, LONGEST_BATCH);
+    const double wanted = options_.precision.error * options_.precision.error;
+    image::MeanPicture mean;
+    Reference reference;
+    const auto reached = [&] { return mean.count() >= FIRST_CHECK && reference.error.relmse <= wanted; };
+    while (!reached() && (mean.count() < FIRST_CHECK || reference.pathTraced < options_.precision.maxFrames)) {
+        if (options_.stop()) return std::nullopt;
+        traceBatch(1 + mean.count(), length);
+        mean.add(renderer_->readMean());
+        reference.pathTraced += length;
+        if (mean.count() < 2) continue;
+        reference.error = mean.ownError();
+        const double cost = double(reference.pathTraced) / double(options_.precision.maxFrames);
+        options_.progress(
+            std::min(1.0, std::max(cost, reference.error.relmse > 0 ? wanted / reference.error.relmse : 1)));
+    }
+    reference.precise = reached();
+    reference.picture = mean.mean();
+    return reference;
+}
+
+} // namespace passes

@@ -1,0 +1,253 @@
+// converge SCENE -o DIR: error against run time for several methods, as CSV, SVG and one page.
+
+#include "engine/base/hash.h"
+#include "passes/race.h"
+#include "passes/reference.h"
+#include "ui/cli/device_options.h"
+#include "ui/cli/interrupt.h"
+#include "ui/cli/method_list.h"
+#include "ui/cli/motion_options.h"
+#include "ui/cli/output_file.h"
+#include "ui/cli/progress.h"
+#include "ui/cli/run_report.h"
+#include "ui/cli/scene_source.h"
+#include "ui/cli/settings_options.h"
+#include "ui/cli/usage_error.h"
+#include "ui/commands/commands.h"
+#include "ui/report/converge_page.h"
+#include "ui/report/race_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+namespace ui
+{
+
+namespace
+{
+
+constexpr double DEFAULT_SECONDS = 10;
+constexpr double MAX_REFERENCE_FRAMES = 1 << 30;
+constexpr auto REPORT_INTERVAL = std::chrono::minutes(2); // a kill leaves a report at most so old
+
+struct ConvergeCommand {
+    std::string scene, directory, reference = "auto";
+    MethodsOption methods;
+    size_t runs = 8;
+    passes::Precision precision;
+    bool resume = false, quiet = false;
+    DeviceOptions device;
+    MotionOptions motion;
+    SettingsOptions settings;
+
+    int run() const;
+
+    passes::Race::Limits limitsOf(const passes::Settings& wanted) const;
+    std::string keyOf(const ConvergeReport& report, const passes::Race::Limits& limits) const;
+    void write(ConvergeReport& report, const RaceStore& store, const passes::References& references) const;
+};
+
+std::vector<passes::Settings> settingsOf(const std::vector<NamedMethod>& methods)
+{
+    std::vector<passes::Settings> list;
+    for (const NamedMethod& method : methods) list.push_back(method.settings);
+    return list;
+}
+
+std::vector<std::string> namesOf(const std::vector<NamedMethod>& methods)
+{
+    std::vector<std::string> list;
+    for (const NamedMethod& method : methods) list.push_back(method.name);
+    return list;
+}
+
+// The path tracer, first in the list when it is not there.
+uint32_t ensurePathTracer(std::vector<NamedMethod>& methods, const passes::Settings& base)
+{
+    const auto isPt = [](const NamedMethod& method) { return method.settings.method == passes::Method::Pt; };
+    if (std::ranges::none_of(methods, isPt)) methods.insert(methods.begin(), readMethods("pt", base).front());
+    return uint32_t(std::ranges::find_if(methods, isPt) - methods.begin());
+}
+
+// Size and time of a file's last change; empty for what is none.
+std::string stampOf(const std::filesystem::path& file)
+{
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none)) return "";
+    return fmt::format("{} {}", std::filesystem::file_size(file, none),
+                       std::filesystem::last_write_time(file, none).time_since_epoch().count());
+}
+
+passes::Race::Limits ConvergeCommand::limitsOf(const passes::Settings& wanted) const
+{
+    if (motion.moving() && wanted.seconds > 0)
+        throw UsageError("--seconds cannot be combined with a moving camera: each frame that is measured needs a "
+                         "reference of its own. Use --frames.");
+    if (wanted.seconds > 0) return {.seconds = wanted.seconds};
+    const bool byFrames = motion.moving() || settings.given("frames") || wanted.frames != passes::Settings().frames;
+    return byFrames ? passes::Race::Limits{.frames = wanted.frames} : passes::Race::Limits{.seconds = DEFAULT_SECONDS};
+}
+
+// Of everything that decides the figures, but for the number of repeats.
+std::string ConvergeCommand::keyOf(const ConvergeReport& report, const passes::Race::Limits& limits) const
+{
+    std::vector<std::string> facts = {scene,
+                                      stampOf(scene),
+                                      reference,
+                                      stampOf(reference),
+                                      report.provenance.device,
+                                      report.provenance.driver,
+                                      version(),
+                                      fmt::format("{} {}", precision.error, precision.maxFrames),
+                                      fmt::format("{} {}", limits.frames, limits.seconds)};
+    for (const auto& [name, value] : motion.toText()) facts.insert(facts.end(), {name, value, stampOf(value)});
+    for (const NamedMethod& method : report.methods) facts.push_back(method.name + " " + hash(method.settings));
+    uint64_t state = FNV_START;
+    for (const std::string& fact : facts) state = fnv1a(std::string_view(fact), state);
+    return fmt::format("{:016x}", state);
+}
+
+void ConvergeCommand::write(ConvergeReport& report, const RaceStore& store, const passes::References& references) const
+{
+    report.references = references.made();
+    report.pictures.clear();
+    for (size_t method = 0; method < report.methods.size() && std::filesystem::exists(store.picture(method)); ++method)
+        report.pictures.push_back(image::read(store.picture(method)).image);
+
+    const std::filesystem::path folder = directory;
+    const std::vector<NamedPlot> plots = convergePlots(report);
+    for (const NamedPlot& plot : plots) writeText(folder / plot.file, plot.svg);
+    writeText(folder / "converge.csv", convergeCsv(report));
+    for (const auto& [frames, made] : report.references)
+        image::write(folder / (report.moving ? fmt::format("reference-{}.exr", frames) : "reference.exr"), made.picture,
+                     {{"scene", scene}, {"frames-done", std::to_string(made.pathTraced)}});
+    writeText(folder / "index.html", convergePage(report, plots));
+}
+
+int ConvergeCommand::run() const
+{
+    passes::Settings wanted = settings.read();
+    motion.adjust(wanted, settings);
+    ConvergeReport report{.scene = scene, .methods = methods.read(wanted), .moving = motion.moving()};
+    report.pt = ensurePathTracer(report.methods, wanted);
+    report.precision = precision.error;
+    const passes::Race::Limits limits = limitsOf(wanted);
+    if (reference != "auto") {
+        if (report.moving) throw UsageError("--reference FILE cannot be combined with a moving camera: use auto.");
+        report.referenceFile = reference;
+    }
+    std::error_code failure;
+    std::filesystem::create_directories(directory, failure);
+    if (failure || !std::filesystem::is_directory(directory))
+        throw Error("Cannot create the directory \"{}\"{}.", directory, failure ? ": " + failure.message() : "");
+    requireWritable(std::filesystem::path(directory) / "index.html");
+
+    Progress progress(quiet);
+    gpu::Device gpu = device.open();
+    const scene::Scene world = openScene(scene, wanted, progress);
+    const passes::CameraAt cameraAt = motion.read(world, wanted);
+    report.provenance = {.command = commandLine(),
+                         .scene = scene,
+                         .device = gpu.adapter().name,
+                         .driver = gpu.adapter().driver,
+                         .settings = passes::toText(wanted)};
+    for (const auto& fact : motion.toText()) report.provenance.settings.push_back(fact);
+    for (const NamedMethod& method : report.methods)
+        report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));
+
+    const RaceStore store(directory, keyOf(report, limits), namesOf(report.methods));
+    if (resume) report.repeats = store.read(runs);
+
+    passes::Race race(gpu, world, settingsOf(report.methods), cameraAt, limits,
+                      [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
+    const Interrupt interrupt;
+    const auto stop = [&] { return interrupt.requested(); };
+    passes::References references =
+        report.referenceFile.empty()
+            ? passes::References(race.renderer(), wanted, cameraAt,
+                                 {.precision = precision,
+                                  .cache = cacheDirectory().empty() ? "" : cacheDirectory() + "/references",
+                                  .progress = [&](double done) { progress.show("Path tracing a reference", done, 1); },
+                                  .stop = stop})
+            : passes::References(reference, wanted);
+    if (!resume) store.clear();
+
+    auto written = std::chrono::steady_clock::now();
+    if (!report.moving || !report.repeats.empty()) references.after(limits.frames);
+    while (report.repeats.size() < runs && !stop()) {
+        const size_t index = report.repeats.size();
+        passes::Repeat repeat = race.run(
+            wanted.seed + index, references,
+            [&](double done) { progress.show("Measuring", double(index) + done, double(runs), "repeats"); }, stop);
+        if (repeat.complete) store.write(index, repeat);
+        report.repeats.push_back(std::move(repeat));
+        if (report.repeats.size() == runs || std::chrono::steady_clock::now() - written < REPORT_INTERVAL) continue;
+        report.provenance.partial = true;
+        write(report, store, references);
+        written = std::chrono::steady_clock::now();
+    }
+    progress.clear();
+    const auto complete = size_t(std::ranges::count_if(report.repeats, &passes::Repeat::complete));
+    report.provenance.partial = complete < runs;
+    write(report, store, references);
+    for (const std::string& sentence : convergeVerdicts(report)) fmt::print("{}\n", sentence);
+    fmt::print("{}/index.html\n", directory);
+
+    uint64_t nonFinite = 0;
+    for (const passes::Repeat& repeat : report.repeats) nonFinite += repeat.nonFinite;
+    if (nonFinite > 0) fmt::print(stderr, "Warning: {} values were not finite and counted as 0.\n", nonFinite);
+    if (!report.provenance.partial) return 0;
+    fmt::print(stderr,
+               "Interrupted: the report in \"{}\" is partial, marked so, with {} of {} repeats; --resume goes on.\n",
+               directory, complete, runs);
+    return EXIT_INTERRUPTED;
+}
+
+} // namespace
+
+Action setUpConverge(CLI::App& app)
+{
+    const auto command = std::make_shared<ConvergeCommand>();
+    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
+        ->required();
+    app.add_option(
+           "-o,--output", command->directory,
+           "Where the report goes, made when missing: index.html (one self-contained page), converge.csv, plots "
+           "as SVG, pictures as EXR.")
+        ->option_text("DIR")
+        ->required();
+    command->methods.addTo(app, "pt,restir-pt,rgb-restir");
+    app.add_option(
+           "--runs", command->runs,
+           "Repeats, each with seeds of its own; intervals come from them. Methods take turns within each. Each "
+           "runs for --seconds (10 s of each method unless --frames says otherwise), or with a moving camera for "
+           "--frames. Means and single frames are both measured, whatever --average says.")
+        ->option_text("whole number, 1 to 9999 (8)")
+        ->check(CLI::Range(1, 9999));
+    app.add_option(
+           "--reference", command->reference,
+           "What errors are measured against. auto: path traced with other random numbers, its own error estimated "
+           "and subtracted, kept in $XDG_CACHE_HOME/trichrome/references; with a moving camera one for each "
+           "measured frame.")
+        ->option_text("FILE|auto (auto)");
+    app.add_option("--reference-error", command->precision.error,
+                   "How precise an automatic reference has to be: the root of its own relative MSE.")
+        ->option_text("0.0001 to 1 (0.02)")
+        ->check(CLI::Range(1e-4, 1.0));
+    app.add_option("--reference-frames", command->precision.maxFrames,
+                   "And the most frames it may take; the page says so.")
+        ->option_text("frames, 16 to 1073741824 (16384)")
+        ->check(CLI::Range(16.0, MAX_REFERENCE_FRAMES));
+    app.add_flag(
+        "--resume", command->resume,
+        "Goes on where a killed or interrupted run of the same settings stopped: finished repeats in DIR count.");
+    app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
+    command->device.addTo(app);
+    command->motion.addTo(app);
+    command->settings.addTo(app);
+    return [command] { return command->run(); };
+}
+
+} // namespace ui
