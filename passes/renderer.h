@@ -48,10 +48,17 @@ class Renderer
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
+    // Renders the scene of `sharing` with other settings; both use the same tables on the device, so that methods can
+    // be compared in turns without building and keeping them twice. Camera and environment must be the same.
+    Renderer(const Renderer& sharing, const Settings& settings, uint32_t runs = 1);
+
+    // How many runs of the picture fit a device's largest binding.
+    static uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
-    void reset();                                       // forgets all frames
+    uint32_t runs() const { return runs_; }
+    void reset(); // forgets all frames
     // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
     // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
@@ -93,7 +100,7 @@ class Renderer
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
-    std::unique_ptr<scene::GpuScene> scene_;
+    std::shared_ptr<const scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;
     std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,

@@ -1,0 +1,86 @@
+#include "ui/cli/method_list.h"
+
+#include "ui/cli/settings_options.h"
+#include "ui/cli/usage_error.h"
+
+#include <algorithm>
+
+namespace ui
+{
+
+namespace
+{
+
+std::vector<std::string> split(const std::string& text, char separator)
+{
+    std::vector<std::string> parts(1);
+    for (const char c : text) {
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
+}
+
+void applyWord(passes::Settings& settings, const std::string& word, bool first)
+{
+    const size_t equals = word.find('=');
+    if (first && word.ends_with(".json"))
+        applyPreset(settings, word);
+    else if (first)
+        passes::set(settings, "method", word);
+    else if (equals == std::string::npos)
+        passes::set(settings, "shift", word);
+    else
+        passes::set(settings, word.substr(0, equals), word.substr(equals + 1));
+}
+
+// What must be the same for all: the picture that they estimate, and what the command itself decides.
+void requireComparable(const passes::Settings& settings, const passes::Settings& base, const std::string& entry)
+{
+    passes::Settings own = base;
+    own.method = settings.method;
+    own.shift = settings.shift;
+    own.maxConfidence = settings.maxConfidence;
+    own.temporal = settings.temporal;
+    own.spatial = settings.spatial;
+    own.spatialRadius = settings.spatialRadius;
+    const auto a = passes::toText(own), b = passes::toText(settings);
+    for (size_t i = 0; i < a.size(); ++i)
+        if (a[i] != b[i])
+            throw UsageError("--methods: \"{}\" sets {} to \"{}\", but what is compared must share it; it is \"{}\".",
+                             entry, a[i].first, b[i].second, a[i].second);
+}
+
+} // namespace
+
+std::vector<NamedMethod> readMethods(const std::string& list, const passes::Settings& base)
+{
+    std::vector<NamedMethod> methods;
+    for (const std::string& entry : split(list, ',')) {
+        NamedMethod method{entry, base};
+        const std::vector<std::string> words = split(entry, ':');
+        try {
+            for (size_t i = 0; i < words.size(); ++i) applyWord(method.settings, words[i], i == 0);
+        } catch (const Error& error) {
+            throw UsageError("--methods: \"{}\" is no method: {}", entry, error.what());
+        }
+        requireComparable(method.settings, base, entry);
+        if (std::ranges::any_of(methods, [&](const NamedMethod& other) { return other.name == entry; }))
+            throw UsageError("--methods: \"{}\" is there twice.", entry);
+        methods.push_back(std::move(method));
+    }
+    return methods;
+}
+
+void MethodsOption::addTo(CLI::App& app, const std::string& initial)
+{
+    list_ = initial;
+    app.add_option("--methods", list_,
+                   "What is compared, separated by commas: METHOD or a preset FILE.json, then :SHIFT or :NAME=VALUE as "
+                   "often as needed, as in rgb-restir:replay:spatial=0. Other settings are common to all.")
+        ->option_text("LIST (" + initial + ")");
+}
+
+} // namespace ui
