@@ -48,6 +48,25 @@ static_assert(std::size(RAY_NAMES) == shared::RAY_KINDS && std::size(SHIFT_NAMES
 constexpr uint64_t RESERVOIR_WORD_BYTES = 2 * sizeof(glm::uvec4);
 constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 
+// Of one pixel, in each buffer.
+struct PixelBytes {
+    uint64_t surfaces = 2 * sizeof(glm::uvec4), color = sizeof(glm::vec4), film = 2 * sizeof(glm::vec4);
+    uint64_t words = 0, paths = 0; // of each of the two sets of reservoirs
+    uint64_t neighbors = 0, shifted = 0;
+};
+
+PixelBytes pixelBytes(const Settings& settings)
+{
+    PixelBytes bytes;
+    if (settings.method == Method::Pt) return bytes;
+    const uint64_t count = estimatorOf(settings.method).target.size();
+    bytes.words = count * RESERVOIR_WORD_BYTES + sizeof(uint32_t);
+    bytes.paths = settings.shift == Shift::Replay ? 0 : count * RESERVOIR_PATH_BYTES;
+    bytes.neighbors = settings.spatial * sizeof(uint32_t);
+    bytes.shifted = count * settings.spatial * sizeof(glm::vec4);
+    return bytes;
+}
+
 } // namespace
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
@@ -76,8 +95,8 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
     createStages();
 }
 
-Renderer::Renderer(const Renderer& sharing, const Settings& settings)
-    : device_(sharing.device_), settings_(settings), featureSet_(sharing.featureSet_), runs_(1),
+Renderer::Renderer(const Renderer& sharing, const Settings& settings, uint32_t runs)
+    : device_(sharing.device_), settings_(settings), featureSet_(sharing.featureSet_), runs_(runs),
       sceneFeatures_(sharing.sceneFeatures_), orthographic_(sharing.orthographic_), lengthScale_(sharing.lengthScale_),
       radianceScale_(sharing.radianceScale_), stats_(sharing.stats_), scene_(sharing.scene_)
 {
@@ -89,34 +108,41 @@ Renderer::Renderer(const Renderer& sharing, const Settings& settings)
     createStages();
 }
 
+uint32_t Renderer::maxRuns(const gpu::Limits& limits, const Settings& settings)
+{
+    const PixelBytes b = pixelBytes(settings);
+    const uint64_t largest = std::max({b.surfaces, b.film, b.words, b.paths, b.shifted});
+    const uint64_t pixels = uint64_t{settings.width} * settings.height;
+    return uint32_t(std::min<uint64_t>(limits.storageBindingBytes / largest / pixels, UINT32_MAX / pixels));
+}
+
 void Renderer::createBuffers()
 {
     const uint64_t pixels = uint64_t{settings_.width} * pictureHeight();
     stats_.bytesPerPixel = 0;
-    const auto perPixel = [&](const char* label, uint64_t bytes, const char* setting = "--size") {
-        stats_.bytesPerPixel += double(bytes);
+    const auto perPixel = [&](const char* label, uint64_t each, const char* setting = "--size") {
+        stats_.bytesPerPixel += double(each);
         // Whole rows of 16 bytes; one, too, where this method does not use what its stages declare.
         return device_.createBuffer(
-            {.label = label, .size = std::max<uint64_t>((pixels * bytes + 15) / 16, 1) * 16, .setting = setting});
+            {.label = label, .size = std::max<uint64_t>((pixels * each + 15) / 16, 1) * 16, .setting = setting});
     };
     frameUniform_ =
         device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
     counters_ = device_.createBuffer({.label = "Counters", .size = shared::COUNTER_COUNT * 2 * sizeof(uint32_t)});
-    surfaces_ = perPixel("Surfaces", 2 * 16);
-    color_ = perPixel("Color", 16);
-    film_ = perPixel("Film", 32);
+    const PixelBytes bytes = pixelBytes(settings_);
+    surfaces_ = perPixel("Surfaces", bytes.surfaces);
+    color_ = perPixel("Color", bytes.color);
+    film_ = perPixel("Film", bytes.film);
 
     const bool resamples = settings_.method != Method::Pt;
     const uint64_t count = resamples ? estimatorOf(settings_.method).target.size() : 0;
-    const uint64_t pathBytes = settings_.shift == Shift::Replay ? 0 : RESERVOIR_PATH_BYTES;
-    const uint64_t words = resamples ? count * RESERVOIR_WORD_BYTES + sizeof(uint32_t) : 0;
-    stats_.reservoirBytes = resamples ? 2 * double(words + count * pathBytes) / double(count) : 0;
-    reservoirs_ = perPixel("Reservoirs", words);
-    history_ = perPixel("History", words);
-    reservoirPaths_ = perPixel("ReservoirPaths", count * pathBytes, "--size or --shift");
-    historyPaths_ = perPixel("HistoryPaths", count * pathBytes, "--size or --shift");
-    neighbors_ = perPixel("Neighbors", resamples ? settings_.spatial * sizeof(uint32_t) : 0, "--size or --spatial");
-    shifted_ = perPixel("Shifted", count * settings_.spatial * sizeof(glm::vec4), "--size or --spatial");
+    stats_.reservoirBytes = resamples ? 2 * double(bytes.words + bytes.paths) / double(count) : 0;
+    reservoirs_ = perPixel("Reservoirs", bytes.words);
+    history_ = perPixel("History", bytes.words);
+    reservoirPaths_ = perPixel("ReservoirPaths", bytes.paths, "--size or --shift");
+    historyPaths_ = perPixel("HistoryPaths", bytes.paths, "--size or --shift");
+    neighbors_ = perPixel("Neighbors", bytes.neighbors, "--size or --spatial");
+    shifted_ = perPixel("Shifted", bytes.shifted, "--size or --spatial");
 
     frame_.width = settings_.width;
     frame_.height = pictureHeight();

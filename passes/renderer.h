@@ -50,11 +50,15 @@ class Renderer
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
     // Renders the scene of `sharing` with other settings; both use the same tables on the device, so that methods can
     // be compared in turns without building and keeping them twice. Camera and environment must be the same.
-    Renderer(const Renderer& sharing, const Settings& settings);
+    Renderer(const Renderer& sharing, const Settings& settings, uint32_t runs = 1);
+
+    // How many runs of the picture fit a device's largest binding.
+    static uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
-    void reset();                                       // forgets all frames
+    uint32_t runs() const { return runs_; }
+    void reset(); // forgets all frames
     // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
     // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);

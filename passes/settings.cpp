@@ -210,11 +210,10 @@ Error unknown(std::string_view name)
 
 } // namespace
 
-std::vector<KnobText> describeSettings()
+std::vector<KnobText> describeSettings(const Settings& initial)
 {
     std::vector<KnobText> texts;
-    const Settings defaults;
-    visitSettings(defaults, [&](const Knob& knob, auto&& field) {
+    visitSettings(initial, [&](const Knob& knob, auto&& field) {
         texts.push_back({knob.name, valuesOf(knob, field), textOf(field), knob.doc});
     });
     return texts;

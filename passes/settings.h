@@ -92,7 +92,7 @@ struct KnobText {
     std::string initial; // the default
     std::string doc;
 };
-std::vector<KnobText> describeSettings();
+std::vector<KnobText> describeSettings(const Settings& initial = {});
 
 // Sets one knob from text as on the command line. Throws Error: unknown name, wrong type, out of range.
 void set(Settings& settings, std::string_view name, std::string_view text);

@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "ui/cli/help.h"
+#include "ui/cli/ranks.h"
 #include "ui/cli/run_report.h"
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
@@ -21,9 +22,11 @@ int say(int code, const char* sentence)
     return code;
 }
 
-int run(const ui::Action& action)
+int run(const ui::Action& action, bool shares)
 {
     try {
+        if (!shares && ui::ranks().count() > 1)
+            throw ui::UsageError("Only correlate shares its work over processes; start this command once.");
         return action();
     } catch (const ui::UsageError& error) {
         return say(EXIT_USAGE, error.what());
@@ -47,11 +50,15 @@ int main(int argc, char** argv)
     std::string names;
     bool known = argc < 2 || argv[1][0] == '-';
     ui::Action chosen;
+    bool shares = false;
     for (const ui::Command& command : ui::commands()) {
         CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
         names += (names.empty() ? "" : ", ") + std::string(command.name);
         known = known || std::string(argv[1]) == command.name;
-        subcommand.final_callback([action = command.setUp(subcommand), &chosen] { chosen = action; });
+        subcommand.final_callback([action = command.setUp(subcommand), own = command.shares, &chosen, &shares] {
+            chosen = action;
+            shares = own;
+        });
     }
     if (!known)
         return say(EXIT_USAGE, fmt::format("There is no command \"{}\"; there are: {}.", argv[1], names).c_str());
@@ -60,5 +67,5 @@ int main(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : EXIT_USAGE; // 0: --help, --version
     }
-    return run(chosen);
+    return ui::ranks().finish(run(chosen, shares));
 }

@@ -38,6 +38,7 @@ CONFINED = {
     r"vulkan/": ["engine/gpu", "ui/window", "tests/engine/gpu"],
     r"(imgui|imgui_\w+)\.h|GLFW/": ["ui/window"],
     r"embree3/": ["engine/scene/bvh", "tests"],
+    r"mpi\.h": ["ui/ranks_mpi.cpp"],
     r"CLI/": ["ui", "tests"],
     r"gtest/": ["tests"],
     r"tiny_gltf\.h": ["engine/scene"],

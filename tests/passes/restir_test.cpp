@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "engine/base/statistics.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/support/gpu_fixture.h"
@@ -233,117 +231,4 @@ TEST_F(RestirTest, LightTimesAPowerOfTwoIsThePictureTimesIt)
     for (glm::vec3& radiance : scene.environment.radiance) radiance *= SCALE;
     const Pixels after = moving(scene, Method::RgbRestir, Shift::Hybrid);
     for (size_t p = 0; p < before.size(); ++p) EXPECT_EQ(after[p], SCALE * before[p]) << p;
-}
-
-// The paper's law in closed form, for trees of one path (point lights, one scattering event), temporal reuse alone:
-// autocovariance between frames n-1 and n is sigma^2 / n for RGB, and sigma^2 / n + (n - 2) / n V for luminance, with
-// V = E[Y] E[f_c^2 / Y] - E[f_c]^2, Y the luminance of a frame's path.
-TEST_F(RestirTest, AutocovarianceFollowsTheClosedForm)
-{
-    constexpr int RUNS = 96;
-    constexpr int FRAMES = 128;
-    scene::Scene scene = sceneNamed("PointLight");
-    scene.environment = {};
-    for (scene::Material& m : scene.materials) m.emission = glm::vec3(0);
-    ASSERT_FALSE(scene.lights.empty());
-    const auto point = scene.lights.front();
-    scene.lights.clear();
-    for (const glm::vec3 hue : {glm::vec3(9, 1, 1), glm::vec3(1, 7, 2), glm::vec3(1, 2, 8)}) {
-        scene.lights.push_back(point);
-        scene.lights.back().intensity = hue;
-        scene.lights.back().position = point.position + 0.2f * (hue - glm::vec3(3));
-    }
-    const auto settings = [](Method method) {
-        Settings s = resting(method);
-        s.maxBounces = 1;
-        return s;
-    };
-
-    // Moments of one frame's path.
-    std::vector<glm::dvec3> f, square, ratio;
-    std::vector<double> luminance;
-    {
-        Renderer renderer(device(), scene, settings(Method::Pt));
-        constexpr int SAMPLES = 2000;
-        for (int i = 0; i < SAMPLES; ++i) {
-            renderer.renderFrame();
-            const Pixels frame = renderer.readFrame().pixels;
-            f.resize(frame.size());
-            square.resize(frame.size());
-            ratio.resize(frame.size());
-            luminance.resize(frame.size());
-            for (size_t p = 0; p < frame.size(); ++p) {
-                const glm::dvec3 value(frame[p]);
-                const double y = glm::dot(value, glm::dvec3(LUMINANCE));
-                f[p] += value / double(SAMPLES);
-                square[p] += value * value / double(SAMPLES);
-                luminance[p] += y / SAMPLES;
-                if (y > 0) ratio[p] += value * value / y / double(SAMPLES);
-            }
-        }
-    }
-    double sigma2 = 0, plateau = 0;
-    for (size_t p = 0; p < f.size(); ++p) {
-        const glm::dvec3 s = square[p] - f[p] * f[p], v = luminance[p] * ratio[p] - f[p] * f[p];
-        sigma2 += (s.x + s.y + s.z) / double(3 * f.size());
-        plateau += (v.x + v.y + v.z) / double(3 * f.size());
-    }
-
-    // Autocovariance at n = 2, 4, ..., FRAMES; runs have seeds of their own.
-    const auto autocovariance = [&](Method method) {
-        Renderer renderer(device(), scene, settings(method));
-        Settings own = settings(method);
-        std::vector<std::vector<std::array<glm::dvec3, 3>>> sums; // by point and pixel: x, y, x y
-        for (int run = 0; run < RUNS; ++run) {
-            own.seed = uint64_t(run) + 77;
-            renderer.apply(own);
-            renderer.reset();
-            Pixels previous;
-            size_t point_ = 0;
-            for (int n = 1; n <= FRAMES; ++n) {
-                renderer.renderFrame();
-                const bool isPoint = n >= 2 && (n & (n - 1)) == 0;
-                const bool precedes = ((n + 1) & n) == 0;
-                if (!isPoint && !precedes) continue;
-                const Pixels now = renderer.readFrame().pixels;
-                if (isPoint) {
-                    if (sums.size() <= point_) sums.emplace_back(now.size());
-                    for (size_t p = 0; p < now.size(); ++p) {
-                        auto& [x, y, xy] = sums[point_][p];
-                        x += glm::dvec3(previous[p]);
-                        y += glm::dvec3(now[p]);
-                        xy += glm::dvec3(previous[p]) * glm::dvec3(now[p]);
-                    }
-                    ++point_;
-                }
-                previous = now;
-            }
-        }
-        std::vector<double> curve;
-        for (const auto& pixels : sums) {
-            double sum = 0;
-            for (const auto& [x, y, xy] : pixels) {
-                const glm::dvec3 c = (xy - x * y / double(RUNS)) / double(RUNS - 1);
-                sum += (c.x + c.y + c.z) / double(3 * pixels.size());
-            }
-            curve.push_back(sum);
-        }
-        return curve;
-    };
-    const std::vector<double> rgb = autocovariance(Method::RgbRestir);
-    const std::vector<double> single = autocovariance(Method::RestirPt);
-    ASSERT_EQ(rgb.size(), 7u);
-    for (size_t i = 0; i < rgb.size(); ++i) {
-        const double n = std::pow(2.0, double(i + 1));
-        EXPECT_NEAR(rgb[i], sigma2 / n, 0.06 * sigma2 / n) << "n = " << n;
-        const double expected = sigma2 / n + (n - 2) / n * plateau;
-        EXPECT_NEAR(single[i], expected, 0.05 * expected) << "n = " << n;
-    }
-    const double slope = std::log2(rgb.back() / rgb.front()) / double(rgb.size() - 1);
-    EXPECT_NEAR(slope, -1.0, 0.03);
-    EXPECT_NEAR(single.back(), plateau, 0.05 * plateau + sigma2 / FRAMES);
-    RecordProperty("slope", std::to_string(slope));
-    RecordProperty("plateau", std::to_string((single.back() - sigma2 / FRAMES) / plateau));
-    std::printf("slope of rgb %.4f; luminance at n = %d over its plateau %.4f\n", slope, FRAMES,
-                (single.back() - sigma2 / FRAMES) / ((FRAMES - 2.0) / FRAMES * plateau));
 }

@@ -64,7 +64,7 @@ void SettingsOptions::addTo(CLI::App& app)
             }
         })
         ->group("Settings");
-    for (const passes::KnobText& knob : passes::describeSettings()) {
+    for (const passes::KnobText& knob : passes::describeSettings(defaults_)) {
         app.add_option_function<std::string>(
                "--" + knob.name, [this, name = knob.name](const std::string& value) { given_[name] = value; }, knob.doc)
             ->option_text(fmt::format("{} ({})", knob.values, knob.initial.empty() ? "empty" : knob.initial))
@@ -75,7 +75,7 @@ void SettingsOptions::addTo(CLI::App& app)
 
 passes::Settings SettingsOptions::read() const
 {
-    passes::Settings settings;
+    passes::Settings settings = defaults_;
     if (!preset_.empty()) applyPreset(settings, preset_);
     for (const std::string& assignment : assignments_) {
         const auto [name, value] = split(assignment);

@@ -18,6 +18,9 @@ void applyPreset(passes::Settings& settings, const std::string& file);
 class SettingsOptions
 {
   public:
+    // `defaults`: of this command, where they differ from those of Settings.
+    explicit SettingsOptions(const passes::Settings& defaults = {}) : defaults_(defaults) {}
+
     // Adds the options to `app`; must live until they are read. Values are checked while parsing (wrong usage).
     void addTo(CLI::App& app);
 
@@ -28,6 +31,7 @@ class SettingsOptions
     bool given(const std::string& name) const;
 
   private:
+    passes::Settings defaults_;
     std::string preset_;
     std::vector<std::string> assignments_;     // "name=value"
     std::map<std::string, std::string> given_; // of the settings' own options

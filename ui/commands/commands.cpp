@@ -7,6 +7,8 @@ std::span<const Command> commands()
 {
     static const Command COMMANDS[] = {
         {"render", "Renders a scene to a picture, without a window.", setUpRender},
+        {"correlate", "How strongly the frames of temporal reuse depend on each other, against M_c.", setUpCorrelate,
+         true},
         {"view", "Opens the window: a scene, every setting live.", setUpView},
         {"compare", "Error figures and difference pictures of pictures; with limits, a gate.", setUpCompare},
         {"converge", "Measures error against run time for several methods, as a page.", setUpConverge},

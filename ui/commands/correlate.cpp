@@ -1,0 +1,341 @@
+// correlate SCENE -o DIR: the paper's experiment, how strongly frames of temporal reuse depend on each other.
+
+#include "passes/autocovariance.h"
+#include "ui/cli/device_options.h"
+#include "ui/cli/interrupt.h"
+#include "ui/cli/method_list.h"
+#include "ui/cli/motion_options.h"
+#include "ui/cli/progress.h"
+#include "ui/cli/ranks.h"
+#include "ui/cli/run_report.h"
+#include "ui/cli/scene_source.h"
+#include "ui/cli/settings_options.h"
+#include "ui/cli/usage_error.h"
+#include "ui/commands/commands.h"
+#include "ui/report/correlation_page.h"
+#include "ui/report/correlation_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+namespace ui
+{
+
+namespace
+{
+
+constexpr uint32_t MIN_BATCH = 3;                    // runs: below, nothing is left to leave out
+constexpr uint32_t MIN_LAW_FRAMES = 64;              // of a run
+constexpr uint32_t LAW_SHARE = 4;                    // single frames for the law: a quarter of the chain's
+constexpr uint64_t NEXT_BATCH = 0x9e3779b97f4a7c15u; // between seeds
+constexpr uint64_t LAW_SEED = 0x5851f42d4c957f2du;   // the law's random numbers are none of the chain's
+
+// The paper's protocol.
+passes::Settings protocol()
+{
+    passes::Settings settings;
+    settings.method = passes::Method::RgbRestir; // --methods decides
+    settings.shift = passes::Shift::Replay;
+    settings.spatial = 0;
+    settings.maxConfidence = 1024;
+    settings.width = 64;
+    settings.height = 36;
+    settings.frames = 1u << 20; // --max-confidence decides
+    settings.average = false;
+    return settings;
+}
+
+struct CorrelateCommand {
+    std::string scene, output;
+    uint32_t runs = 32, batch = 16;
+    bool resume = false, quiet = false;
+    DeviceOptions device;
+    MotionOptions motion;
+    MethodsOption methods;
+    SettingsOptions settings{protocol()};
+
+    passes::Settings readSettings() const;
+    std::vector<NamedMethod> readMethods(const passes::Settings& base) const;
+    std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const;
+    int run() const;
+};
+
+uint32_t lastFrame(const NamedMethod& method)
+{
+    return std::min(method.settings.frames, method.settings.maxConfidence);
+}
+
+uint32_t lawFrames(const NamedMethod& method)
+{
+    return std::max(MIN_LAW_FRAMES, lastFrame(method) / LAW_SHARE);
+}
+
+// Measures batches, one after the other, with the renderers that it needs.
+class Correlator
+{
+  public:
+    Correlator(gpu::Device& gpu, const scene::Scene& world, const passes::Settings& settings, passes::CameraAt cameraAt,
+               const std::function<void(double)>& bvhProgress)
+        : cameraAt_(std::move(cameraAt)), plain_(settings)
+    {
+        plain_.method = passes::Method::Pt;
+        passes::Settings dark = plain_;
+        dark.maxBounces = 0;
+        emitters_ = std::make_unique<passes::Renderer>(gpu, world, dark, bvhProgress);
+        if (cameraAt_) emitters_->setCamera(cameraAt_(0));
+        emitters_->renderFrame();
+        emission_ = emitters_->readFrame();
+    }
+
+    // The law of plain frames, as many as the longest law of a method has.
+    CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
+    {
+        CorrelationBatch result{.method = PATH_TRACER, .index = index};
+        passes::Renderer& renderer = rendererOf(PATH_TRACER, plain_, runs);
+        result.law = law(renderer, plain_, index, frames, tick);
+        result.nonFinite = nonFinite(renderer);
+        return result;
+    }
+
+    CorrelationBatch measure(const NamedMethod& method, uint32_t index, uint32_t runs, const passes::Tick& tick)
+    {
+        CorrelationBatch result{.method = method.name, .index = index};
+        passes::Renderer& renderer = rendererOf(method.name, method.settings, runs);
+        if (needsLaw(method)) {
+            result.law = law(renderer, method.settings, index, lawFrames(method), tick);
+            result.nonFinite = nonFinite(renderer);
+            if (!result.law) return result;
+        }
+        passes::Settings own = method.settings;
+        own.seed += index * NEXT_BATCH;
+        renderer.apply(own);
+        result.points = measureChain(renderer, lastFrame(method), cameraAt_, tick);
+        result.nonFinite += nonFinite(renderer);
+        return result;
+    }
+
+    // How many frames `measure` renders.
+    uint64_t cost(const NamedMethod& method) const
+    {
+        return lastFrame(method) + (needsLaw(method) ? lawFrames(method) : 0);
+    }
+
+  private:
+    bool needsLaw(const NamedMethod& method) const
+    {
+        return lawHolds(method.settings, bool(cameraAt_)) && !passes::accumulates(method.settings.method);
+    }
+
+    passes::Renderer& rendererOf(const std::string& name, const passes::Settings& settings, uint32_t runs)
+    {
+        std::unique_ptr<passes::Renderer>& renderer = renderers_[name];
+        if (!renderer || renderer->runs() != runs) {
+            renderer.reset(); // first: memory
+            renderer = std::make_unique<passes::Renderer>(*emitters_, settings, runs);
+        }
+        return *renderer;
+    }
+
+    std::optional<passes::FrameLaw> law(passes::Renderer& renderer, passes::Settings settings, uint32_t index,
+                                        uint32_t frames, const passes::Tick& tick)
+    {
+        settings.temporal = false;
+        settings.seed = (settings.seed + index * NEXT_BATCH) ^ LAW_SEED;
+        renderer.apply(settings);
+        if (cameraAt_) renderer.setCamera(cameraAt_(0));
+        return measureLaw(renderer, frames, passes::resolvingTargets(settings.method), emission_, tick);
+    }
+
+    static uint64_t nonFinite(passes::Renderer& renderer)
+    {
+        uint64_t sum = 0;
+        for (const auto& [stage, count] : renderer.stats().nonFinite) sum += count;
+        return sum;
+    }
+
+    passes::CameraAt cameraAt_;
+    passes::Settings plain_;
+    std::unique_ptr<passes::Renderer> emitters_; // holds the scene for the others
+    std::map<std::string, std::unique_ptr<passes::Renderer>> renderers_;
+    image::Image emission_;
+};
+
+passes::Settings CorrelateCommand::readSettings() const
+{
+    if (settings.given("method")) throw UsageError("correlate takes --methods, a list, instead of --method.");
+    const passes::Settings base = settings.read();
+    if (base.pixelFilter != passes::PixelFilter::Center)
+        throw UsageError("correlate follows what a pixel's center sees; --pixel-filter must be center, not box.");
+    return base;
+}
+
+std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
+{
+    const std::vector<NamedMethod> list = methods.read(base);
+    for (const NamedMethod& method : list) {
+        if (method.settings.method == passes::Method::Pt)
+            throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);
+        if (lastFrame(method) < 2)
+            throw UsageError("--methods: \"{}\" renders {} frame; --frames and --max-confidence must be at least 2.",
+                             method.name, lastFrame(method));
+    }
+    return list;
+}
+
+// Runs of each batch: as equal as can be, at most --batch and what the device can bind. The same on all ranks, however
+// many there are.
+std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const
+{
+    uint32_t most = batch;
+    for (const NamedMethod& method : list)
+        most = std::min(most, passes::Renderer::maxRuns(gpu.limits(), method.settings));
+    const uint32_t count = (runs + std::max(most, 1u) - 1) / std::max(most, 1u);
+    if (most < MIN_BATCH || runs / count < MIN_BATCH)
+        throw Error(
+            "{} runs of {}x{} pixels do not make batches of {} or more, of which the device \"{}\" can render {} "
+            "at once; reduce --size.",
+            runs, list.front().settings.width, list.front().settings.height, MIN_BATCH, gpu.adapter().name, most);
+    std::vector<uint32_t> sizes;
+    for (uint32_t i = 0; i < count; ++i) sizes.push_back(runs / count + (i < runs % count ? 1 : 0));
+    return sizes;
+}
+
+int CorrelateCommand::run() const
+{
+    const passes::Settings base = readSettings();
+    const std::vector<NamedMethod> list = readMethods(base);
+    const Ranks& processes = ranks();
+    Progress progress(quiet || processes.index() > 0);
+    gpu::Device gpu = device.open();
+    const std::vector<uint32_t> sizes = shareOut(gpu, list);
+
+    std::vector<std::pair<std::string, std::string>> facts = {
+        {"scene", scene}, {"device", gpu.adapter().name}, {"version", version()}};
+    for (const auto& [name, value] : passes::toText(base))
+        if (name != "method" && name != "seconds") facts.emplace_back(name, value);
+    for (const auto& fact : motion.toText()) facts.push_back(fact);
+    facts.emplace_back("runs", std::to_string(runs));
+    facts.emplace_back("batches", std::to_string(sizes.size()));
+    for (const NamedMethod& method : list) facts.emplace_back("method " + method.name, passes::hash(method.settings));
+    const scene::Scene world = openScene(scene, base, progress);
+    const passes::CameraAt cameraAt = motion.read(world, base);
+
+    const CorrelationStore store(output);
+    if (processes.index() == 0) store.open(facts, resume);
+    processes.barrier();
+    if (processes.index() > 0) store.open(facts, true); // where directories are not shared, each has its own
+    std::vector<CorrelationBatch> batches = store.load();
+
+    // What this process has to do: items in the order of batches, dealt out in turns.
+    struct Item {
+        uint32_t index;
+        const NamedMethod* method; // null: the path tracer
+    };
+    Correlator correlator(gpu, world, base, cameraAt,
+                          [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
+    progress.clear();
+    uint32_t plainFrames = 0;
+    for (const NamedMethod& method : list) plainFrames = std::max(plainFrames, lawFrames(method));
+    const auto cost = [&](const Item& item) { return item.method ? correlator.cost(*item.method) : plainFrames; };
+    std::vector<Item> items;
+    uint64_t turn = 0, frames = 0;
+    for (uint32_t index = 0; index < sizes.size(); ++index)
+        for (size_t m = 0; m <= list.size(); ++m) {
+            const Item item{index, m == 0 ? nullptr : &list[m - 1]};
+            const std::string name = item.method ? item.method->name : PATH_TRACER;
+            const bool done = std::ranges::any_of(
+                batches, [&](const CorrelationBatch& b) { return b.index == index && b.method == name; });
+            if (turn++ % processes.count() != processes.index() || done) continue;
+            items.push_back(item);
+            frames += cost(item);
+        }
+
+    const Interrupt interrupt;
+    const auto start = std::chrono::steady_clock::now();
+    uint64_t rendered = 0;
+    const passes::Tick tick = [&] {
+        progress.show("Correlating", double(++rendered), double(frames), "frames");
+        return !interrupt.requested();
+    };
+    for (const Item& item : items) {
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (item.index > 0 && base.seconds > 0 && elapsed >= base.seconds) break;
+        batches.push_back(item.method ? correlator.measure(*item.method, item.index, sizes[item.index], tick)
+                                      : correlator.measurePathTracer(item.index, sizes[item.index], plainFrames, tick));
+        if (interrupt.requested()) break;
+        store.save(batches.back());
+    }
+    progress.clear();
+
+    std::vector<Bytes> records;
+    for (const CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
+    Correlation correlation{.scene = scene,
+                            .moving = bool(cameraAt),
+                            .partial = interrupt.requested(),
+                            .width = base.width,
+                            .height = base.height,
+                            .runs = runs};
+    batches.clear();
+    for (const Bytes& record : processes.gather(records)) batches.push_back(fromBytes(record));
+    if (processes.index() > 0) return correlation.partial ? EXIT_INTERRUPTED : 0;
+    evaluate(correlation, list, std::move(batches));
+    std::string command = commandLine();
+    if (processes.count() > 1) command = fmt::format("mpirun -n {} {}", processes.count(), command);
+    writeCorrelation(output, correlation,
+                     {.command = command,
+                      .scene = scene,
+                      .device = gpu.adapter().name,
+                      .driver = gpu.adapter().driver,
+                      .settings = facts,
+                      .partial = correlation.partial});
+    if (correlation.nonFinite > 0)
+        std::fprintf(stderr, "Warning: %llu values were not finite and counted as 0.\n",
+                     static_cast<unsigned long long>(correlation.nonFinite));
+    for (const std::string& sentence : verdictsOf(correlation)) std::printf("%s\n", sentence.c_str());
+    std::printf("The page: %s\n", (std::filesystem::path(output) / "index.html").c_str());
+    if (!correlation.partial) return 0;
+    std::fprintf(stderr, "Interrupted: %s is partial, marked so; --resume goes on with its finished batches.\n",
+                 output.c_str());
+    return EXIT_INTERRUPTED;
+}
+
+} // namespace
+
+Action setUpCorrelate(CLI::App& app)
+{
+    const auto command = std::make_shared<CorrelateCommand>();
+    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
+        ->required();
+    app.add_option(
+           "-o,--output", command->output,
+           "Directory for correlate.csv, autocovariance.svg, maps, and index.html, which holds them all. Made if "
+           "it is missing.")
+        ->option_text("DIR")
+        ->required();
+    command->methods.addTo(app, "restir-pt,rgb-restir");
+    app.add_option(
+           "--runs", command->runs,
+           "Independent runs, over which covariances are taken. With temporal reuse alone pixels are independent "
+           "chains too: pixels times runs is what decides the intervals. Cost grows with it.")
+        ->option_text("6 to 1000000 runs (32)")
+        ->check(CLI::Range(2 * MIN_BATCH, 1000000u));
+    app.add_option(
+           "--batch", command->batch,
+           "Runs rendered side by side. A finished batch is stored in DIR; processes share batches. Larger ones "
+           "use a large GPU better; covariances are about the means of a batch.")
+        ->option_text("3 to 1000 runs (16)")
+        ->check(CLI::Range(MIN_BATCH, 1000u));
+    app.add_flag("--resume", command->resume, "Goes on with the batches that DIR holds, of the same settings.");
+    app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
+    command->device.addTo(app);
+    command->motion.addTo(app);
+    command->settings.addTo(app);
+    app.footer("Renders frames up to --max-confidence (or --frames, if less; beyond, up to --max-confidence, the law "
+               "predicts) and reports M = 2, 4, 8, ... of one chain. --seconds ends it after the batch at hand.");
+    return [command] { return command->run(); };
+}
+
+} // namespace ui

@@ -1,0 +1,271 @@
+#include "ui/report/correlation_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "engine/base/files.h"
+#include "engine/image/image.h"
+#include "ui/cli/output_file.h"
+#include "ui/report/plot.h"
+
+namespace ui
+{
+
+namespace
+{
+
+using statistics::Estimate;
+
+constexpr uint32_t MAP_WIDTH = 480; // pixels on the page, at least
+constexpr double BRIGHT = 0.98;     // this part of a map's values lies below 1
+
+std::string text(double value)
+{
+    return fmt::format("{:.4g}", value);
+}
+
+std::string intervalText(const Estimate& estimate)
+{
+    const statistics::Interval i = statistics::meanInterval(estimate);
+    return fmt::format("{:.3g} to {:.3g}", i.low, i.high);
+}
+
+const CurvePoint* lastMeasured(const Curve& curve)
+{
+    const auto point = std::ranges::find_if(curve.points.rbegin(), curve.points.rend(),
+                                            [](const CurvePoint& p) { return p.runs > 0; });
+    return point == curve.points.rend() ? nullptr : &*point;
+}
+
+// a / b with an interval to first order in logarithms; both of independent estimates (of the same trees, which makes
+// the true interval narrower if anything).
+std::string ratioText(const Estimate& a, const Estimate& b)
+{
+    const double spread = std::sqrt(a.varianceOfMean / (a.mean * a.mean) + b.varianceOfMean / (b.mean * b.mean));
+    const double factor =
+        std::exp(statistics::studentQuantile(0.975, std::min(a.degreesOfFreedom, b.degreesOfFreedom)) * spread);
+    const double ratio = a.mean / b.mean;
+    return fmt::format("{:.3g} times ({:.3g} to {:.3g})", ratio, ratio / factor, ratio * factor);
+}
+
+Plot plotOf(const Correlation& correlation)
+{
+    Plot plot{.title = "Autocovariance between the frames M-1 and M: " + correlation.scene,
+              .xLabel = "M (frames; M_c >= M)",
+              .yLabel = "autocovariance (radiance^2)",
+              .logX = true,
+              .logY = true};
+    int color = 0;
+    for (const Curve& curve : correlation.curves) {
+        Series measured{.name = curve.method.name, .mark = Series::Mark::Points, .color = color};
+        Series law{.name = curve.method.name + ", law", .mark = Series::Mark::Dashed, .color = color};
+        for (const CurvePoint& point : curve.points) {
+            if (point.runs > 0) {
+                const statistics::Interval interval = statistics::meanInterval(point.autocovariance);
+                measured.x.push_back(point.frame);
+                measured.y.push_back(point.autocovariance.mean);
+                measured.low.push_back(interval.low);
+                measured.high.push_back(interval.high);
+            }
+            if (point.law) {
+                law.x.push_back(point.frame);
+                law.y.push_back(point.law->mean);
+            }
+        }
+        if (correlation.moving) measured.mark = Series::Mark::LinePoints;
+        plot.series.push_back(std::move(measured));
+        if (!law.x.empty()) plot.series.push_back(std::move(law));
+        ++color;
+    }
+    return plot;
+}
+
+void addCurves(Page& page, const Correlation& correlation)
+{
+    for (const Curve& curve : correlation.curves) {
+        page.heading(curve.method.name);
+        std::string line;
+        if (correlation.sigma2)
+            line += fmt::format("Path tracer's variance per frame σ² = {} ({}). ", text(correlation.sigma2->mean),
+                                intervalText(*correlation.sigma2));
+        if (curve.plateau && passes::accumulates(curve.method.settings.method))
+            line += "Plateau P = 0: every channel has a reservoir of its own. ";
+        else if (curve.plateau)
+            line += fmt::format("Plateau P = {} ({}). ", text(curve.plateau->mean), intervalText(*curve.plateau));
+        if (const auto cross = crossover(correlation, curve))
+            line += fmt::format("Crossover M* = σ²/P = {} ({:.3g} to {:.3g}). ",
+                                text(correlation.sigma2->mean / curve.plateau->mean), cross->low, cross->high);
+        if (!line.empty()) page.paragraph(line);
+        std::vector<std::vector<std::string>> rows;
+        for (const CurvePoint& point : curve.points) {
+            const bool measured = point.runs > 0;
+            rows.push_back({std::to_string(point.frame), measured ? text(point.autocovariance.mean) : "–",
+                            measured ? intervalText(point.autocovariance) : "–",
+                            point.law ? text(point.law->mean) : "–",
+                            std::isnan(point.z()) ? "–" : fmt::format("{:+.2f}", point.z()),
+                            measured ? text(point.variance.mean) : "–",
+                            measured ? fmt::format("{} x {}", point.runs, point.pixels) : "–"});
+        }
+        page.table({"M", "measured", "95% interval", "predicted", "z", "variance of frame M", "runs x pixels"}, rows);
+    }
+}
+
+// Enlarged so that pixels can be seen, and scaled so that most of it lies within what a screen shows.
+image::Image shown(const std::vector<glm::dvec3>& values, uint32_t width, uint32_t height)
+{
+    std::vector<double> sorted;
+    for (const glm::dvec3& value : values) sorted.push_back(std::max({value.x, value.y, value.z}));
+    std::ranges::sort(sorted);
+    const double bright = sorted[size_t(BRIGHT * double(sorted.size() - 1))];
+    const double scale = bright > 0 ? 1 / bright : 1;
+    const uint32_t zoom = std::max(1u, (MAP_WIDTH + width - 1) / width);
+    image::Image picture{.width = width * zoom, .height = height * zoom};
+    for (uint32_t y = 0; y < picture.height; ++y)
+        for (uint32_t x = 0; x < picture.width; ++x)
+            picture.pixels.emplace_back(values[size_t{y / zoom} * width + x / zoom] * scale);
+    return picture;
+}
+
+std::vector<std::byte> pngOf(const std::filesystem::path& file, const image::Image& picture)
+{
+    image::write(file, picture, {});
+    return files::read(file);
+}
+
+void addFloor(Page& page, const Curve& curve, const Correlation& correlation, const std::filesystem::path& directory)
+{
+    if (curve.floor.empty() || passes::accumulates(curve.method.settings.method)) return;
+    std::string name = "color-noise-floor-";
+    for (const char c : curve.method.name) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+    image::Image exr{.width = correlation.width, .height = correlation.height};
+    std::vector<glm::dvec3> deviation;
+    for (const glm::dvec3& value : curve.floor) {
+        exr.pixels.emplace_back(value);
+        deviation.push_back(glm::sqrt(glm::max(value, glm::dvec3(0)))); // an estimate of 0 may fall below
+    }
+    image::write(directory / (name + ".exr"), exr, {{"scene", correlation.scene}, {"method", curve.method.name}});
+
+    page.heading("Color-noise floor of " + curve.method.name);
+    page.paragraph(
+        "What no history removes: √P by pixel and channel, the standard deviation that is left when one path, "
+        "chosen by luminance out of all history, colors the pixel. Bright pixels are where reservoirs of their "
+        "own pay for channels; the hue says which channel is noisy. P itself is in " +
+        name + ".exr.");
+    page.picture(pngOf(directory / (name + ".png"), shown(deviation, correlation.width, correlation.height)),
+                 "√P, scaled so that 98% of the pixels lie below half brightness.");
+    const std::filesystem::path scratch = directory / (name + "-picture.png");
+    page.picture(pngOf(scratch, shown(curve.mean, correlation.width, correlation.height)),
+                 "The picture itself, likewise: the mean of all frames, without what is seen directly.");
+    std::filesystem::remove(scratch);
+}
+
+} // namespace
+
+std::vector<std::string> verdictsOf(const Correlation& correlation)
+{
+    std::vector<std::string> sentences;
+    const Curve* one = nullptr;  // a reservoir that channels share
+    const Curve* each = nullptr; // reservoirs of their own
+    for (const Curve& curve : correlation.curves) {
+        if (lastMeasured(curve) == nullptr) continue;
+        const Curve*& which = passes::accumulates(curve.method.settings.method) ? each : one;
+        if (which == nullptr) which = &curve;
+    }
+    if (one != nullptr && each != nullptr) {
+        const CurvePoint *a = lastMeasured(*one), *b = lastMeasured(*each);
+        if (a->frame != b->frame)
+            sentences.push_back(fmt::format("{} is measured to M = {}, {} to M = {}.", one->method.name, a->frame,
+                                            each->method.name, b->frame));
+        else if (a->autocovariance.mean > 0 && b->autocovariance.mean > 0)
+            sentences.push_back(fmt::format("At M = {}, frames of {} covary {} as much as those of {}: {} against {}.",
+                                            a->frame, one->method.name, ratioText(a->autocovariance, b->autocovariance),
+                                            each->method.name, text(a->autocovariance.mean),
+                                            text(b->autocovariance.mean)));
+    }
+    if (one != nullptr && each != nullptr && one->points.back().law && each->points.back().law) {
+        const CurvePoint &a = one->points.back(), &b = each->points.back();
+        if (a.frame == b.frame && a.runs == 0)
+            sentences.push_back(fmt::format("Predicted at M = {}: {} against {}, {}.", a.frame, text(a.law->mean),
+                                            text(b.law->mean), ratioText(*a.law, *b.law)));
+    }
+    if (one != nullptr && one->plateau) {
+        if (const auto cross = crossover(correlation, *one)) {
+            const double at = correlation.sigma2->mean / one->plateau->mean;
+            sentences.push_back(fmt::format(
+                "The curves part around M* = σ²/P = {:.3g} ({:.3g} to {:.3g}): before, a reservoir for each "
+                "channel gains little; a tenfold gap needs M of about 9 M* = {:.2g}.",
+                at, cross->low, cross->high, 9 * at));
+        } else {
+            sentences.push_back("No plateau was found: here one reservoir is as good as several.");
+        }
+    }
+    double worst = 0;
+    int count = 0;
+    for (const Curve& curve : correlation.curves)
+        for (const CurvePoint& point : curve.points)
+            if (const double z = point.z(); !std::isnan(z)) {
+                worst = std::max(worst, std::abs(z));
+                ++count;
+            }
+    if (count > 0)
+        sentences.push_back(
+            worst < 4
+                ? fmt::format(
+                      "Measured and predicted agree: of {} points none is further apart than {:.1f} standard errors.",
+                      count, worst)
+                : fmt::format("Measured and predicted DISAGREE: of {} points one is {:.1f} standard errors apart. "
+                              "Alpha-blended surfaces seen directly would explain it; else something is wrong.",
+                              count, worst));
+    if (each != nullptr && lawHolds(each->method.settings, correlation.moving))
+        sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
+                            "accumulation: frame M is the "
+                            "mean of the path tracer's first M frames, which a path tracer that adds up its frames "
+                            "gives for less time. "
+                            "RGB must earn its cost with spatial reuse and motion.");
+    if (correlation.moving)
+        sentences.push_back("The camera moves: figures follow surface points from frame to frame, and the law of the "
+                            "resting camera says nothing about them.");
+    if (sentences.empty()) sentences.push_back("Nothing was measured yet.");
+    return sentences;
+}
+
+void writeCorrelation(const std::filesystem::path& directory, const Correlation& correlation,
+                      const Provenance& provenance)
+{
+    writeText(directory / "correlate.csv", csvOf(correlation));
+    Page page("Autocovariance: " + correlation.scene);
+    for (const std::string& sentence : verdictsOf(correlation)) page.verdict(sentence);
+    if (const std::optional<std::string> svg = drawSvg(plotOf(correlation))) {
+        writeText(directory / "autocovariance.svg", *svg);
+        page.plot(*svg, "Points: measured, with 95% intervals. Dashed: what the law predicts from single frames.");
+    } else {
+        page.paragraph("There is no plot: gnuplot is not installed (Debian package gnuplot-nox).");
+    }
+    page.provenance(provenance);
+    for (const Curve& curve : correlation.curves) addFloor(page, curve, correlation, directory);
+    addCurves(page, correlation);
+    page.heading("How this was measured");
+    page.paragraph(fmt::format(
+        "Independent runs of {} x {} pixels, {} asked for, rendered side by side in batches. For each pixel and "
+        "channel the "
+        "sample covariance over the runs of a batch between frame M-1 (x) and frame M (y), about their means over the "
+        "runs; then the mean over pixels, channels and batches. One run serves every M, since the cap M_c does not "
+        "bind "
+        "before frame M_c + 1, so neighboring points are not independent. Intervals: jackknife, leaving one run out. "
+        "{}",
+        correlation.width, correlation.height, correlation.runs,
+        correlation.moving
+            ? "The camera moves, so a pixel of frame M pairs with the pixel of frame M-1 that saw the same point; "
+              "pixels "
+              "without one do not count. The means over runs are each frame's own reference."
+            : "Predicted: V/M + (1 - 2/M) P, from single frames without reuse and with random numbers of their own, "
+              "where "
+              "V is the variance of a frame and P = E[s] E[q] - E[C]², s the weight sum and E[q] = E[C²/s]. For RGB "
+              "ReSTIR V = σ² and P = 0."));
+    page.paragraph(fmt::format("Values that were not finite: {}.", correlation.nonFinite));
+    writeText(directory / "index.html", page.html());
+}
+
+} // namespace ui
