@@ -132,6 +132,29 @@ TEST_F(RestirTest, RgbIsTheRunningMeanOfThePathTracer)
     }
 }
 
+// The same of hybrid shifts that are really made, each of them home: identities, and defined, on diffuse, glossy and
+// glass vertices. At a grazing joint the density is evaluated for a slightly other direction: up to 1e-3 in single
+// pixels.
+TEST_F(RestirTest, HybridShiftsHomeAreIdentities)
+{
+    constexpr int FRAMES = 8;
+    for (const char* name : {"Glossy", "FrostedGlass"}) {
+        const scene::Scene scene = sceneNamed(name);
+        const std::vector<Pixels> traced = pathTraced(scene, FRAMES);
+        Settings settings = resting(Method::RgbRestir);
+        settings.shift = Shift::Hybrid;
+        Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Everything);
+        for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
+        const Pixels picture = renderer.readFrame().pixels;
+        size_t wrong = 0;
+        for (size_t p = 0; p < picture.size(); ++p) {
+            const glm::dvec3 mean = meanOver(traced, FRAMES, p);
+            for (int c = 0; c < 3; ++c) wrong += !(std::abs(picture[p][c] - mean[c]) <= 1e-4 * mean[c]);
+        }
+        EXPECT_LE(wrong, 3 * picture.size() / 1000) << name; // single decisions differ with everything compiled in
+    }
+}
+
 // The same of luminance; single channels are left to chance.
 TEST_F(RestirTest, LuminanceIsTheRunningMeanOfThePathTracersLuminance)
 {
