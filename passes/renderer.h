@@ -48,9 +48,10 @@ class Renderer
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
-    // Renders the scene of `sharing` with other settings; both use the same tables on the device, so that methods can
-    // be compared in turns without building and keeping them twice. Camera and environment must be the same.
-    Renderer(const Renderer& sharing, const Settings& settings, uint32_t runs = 1);
+    // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so that
+    // methods can be compared in turns; wait() after each frame of either keeps their times apart. The environment must
+    // be the sibling's.
+    Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
     // How many runs of the picture fit a device's largest binding.
     static uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings);
@@ -62,6 +63,7 @@ class Renderer
     // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
     // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
+    void recompile(); // takes all stages from pipelines() anew, once that holds other ones; starts over
     const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
     void wait();                                 // until all submitted frames are done
@@ -75,10 +77,17 @@ class Renderer
     std::vector<uint32_t> readPreviousPixels();
     RenderStats stats(); // waits
 
+    // What frames with these settings compile, for those who compile ahead: shaders and their constants.
+    std::vector<std::pair<std::string, Variant>> stagesFor(const Settings& settings, bool cameraMoves = false) const;
+    // A stage of the caller's own over what frames leave behind, and over `more`; it lives until apply().
+    std::unique_ptr<Stage> makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more = {});
+    const Variant& variant() const { return variant_; }
+    PipelinePool& pipelines() { return *pipelines_; }
+    gpu::Device& device() { return device_; }
+
   private:
     void createBuffers();
     void createStages();
-    std::unique_ptr<Stage> makeStage(const char* name, const Variant& variant);
     const Stage& temporal();
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
@@ -100,6 +109,7 @@ class Renderer
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
+    std::shared_ptr<PipelinePool> pipelines_;
     std::shared_ptr<const scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;

@@ -1,6 +1,6 @@
 #include "ui/cli/method_list.h"
 
-#include "ui/cli/settings_options.h"
+#include "ui/cli/presets.h"
 #include "ui/cli/usage_error.h"
 
 #include <algorithm>

@@ -12,9 +12,6 @@
 namespace ui
 {
 
-// Sets what the JSON file names. Throws Error.
-void applyPreset(passes::Settings& settings, const std::string& file);
-
 class SettingsOptions
 {
   public:
