@@ -52,7 +52,8 @@ constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
                    const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs)
-    : device_(device), settings_(settings), featureSet_(featureSet), runs_(runs)
+    : device_(device), settings_(settings), featureSet_(featureSet), runs_(runs),
+      pipelines_(std::make_shared<PipelinePool>(device))
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     orthographic_ = camera.orthographic;
@@ -61,7 +62,7 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
     const auto start = std::chrono::steady_clock::now();
     const scene::SceneTables tables =
         scene::makeSceneTables(scene, device.limits().tableBytes, bvhProgress, featureSet);
-    scene_ = std::make_unique<scene::GpuScene>(device, tables);
+    scene_ = std::make_shared<scene::GpuScene>(device, tables);
     stats_.bvhSeconds = tables.bvh.stats.buildSeconds;
     stats_.tablesSeconds = secondsSince(start) - stats_.bvhSeconds;
     stats_.bvh = tables.bvh.stats;
@@ -73,6 +74,17 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
+    createStages();
+}
+
+Renderer::Renderer(const Renderer& sibling, const Settings& settings)
+    : device_(sibling.device_), settings_(settings), featureSet_(sibling.featureSet_), runs_(sibling.runs_),
+      sceneFeatures_(sibling.sceneFeatures_), orthographic_(sibling.orthographic_), lengthScale_(sibling.lengthScale_),
+      radianceScale_(sibling.radianceScale_), stats_(sibling.stats_), pipelines_(sibling.pipelines_),
+      scene_(sibling.scene_)
+{
+    frame_.camera = frame_.previousCamera = sibling.frame_.camera;
+    createBuffers();
     createStages();
 }
 
@@ -148,18 +160,45 @@ void Renderer::createStages()
     }
 }
 
-std::unique_ptr<Stage> Renderer::makeStage(const char* name, const Variant& variant)
+void Renderer::recompile()
+{
+    wait();
+    createStages();
+    reset();
+}
+
+std::vector<std::pair<std::string, Variant>> Renderer::stagesFor(const Settings& settings, bool cameraMoves) const
+{
+    const Variant variant = makeVariant(sceneFeatures_, settings, orthographic_);
+    std::vector<std::pair<std::string, Variant>> list = {{"primary", variant}, {"accumulate", variant}};
+    if (settings.method == Method::Pt) {
+        list.emplace_back("path_trace", variant);
+        return list;
+    }
+    list.emplace_back("canonical", variant);
+    if (settings.temporal) {
+        list.emplace_back("temporal", variant);
+        list.back().second.SAME_VIEW = !cameraMoves && settings.pixelFilter == PixelFilter::Center;
+    }
+    if (settings.spatial > 0) list.emplace_back("spatial_trace", variant);
+    list.emplace_back("spatial_gather", variant);
+    return list;
+}
+
+std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more)
 {
     const auto start = std::chrono::steady_clock::now();
     const StageContext context{.device = device_,
+                               .pipelines = *pipelines_,
                                .scene = *scene_,
                                .variant = variant,
                                .frame = {{"Frame", &frameUniform_}, {"Counters", &counters_}}};
-    const NamedBuffers all = {{"Surfaces", &surfaces_},   {"Color", &color_},
-                              {"Film", &film_},           {"Reservoirs", &reservoirs_},
-                              {"History", &history_},     {"ReservoirPaths", &reservoirPaths_},
-                              {"Neighbors", &neighbors_}, {"HistoryPaths", &historyPaths_},
-                              {"Shifted", &shifted_},     {"PreviousPixels", &previousPixels_}};
+    NamedBuffers all = {{"Surfaces", &surfaces_},   {"Color", &color_},
+                        {"Film", &film_},           {"Reservoirs", &reservoirs_},
+                        {"History", &history_},     {"ReservoirPaths", &reservoirPaths_},
+                        {"Neighbors", &neighbors_}, {"HistoryPaths", &historyPaths_},
+                        {"Shifted", &shifted_},     {"PreviousPixels", &previousPixels_}};
+    all.insert(all.end(), more.begin(), more.end());
     auto stage = std::make_unique<Stage>(context, name, all);
     stats_.compileSeconds += secondsSince(start);
     return stage;

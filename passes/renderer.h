@@ -48,6 +48,9 @@ class Renderer
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
+    // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory; wait()
+    // after each frame of either keeps their times apart.
+    Renderer(const Renderer& sibling, const Settings& settings);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
@@ -55,6 +58,7 @@ class Renderer
     // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
     // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
+    void recompile(); // takes all stages from pipelines() anew, once that holds other ones; starts over
     const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
     void wait();                                 // until all submitted frames are done
@@ -68,10 +72,17 @@ class Renderer
     std::vector<uint32_t> readPreviousPixels();
     RenderStats stats(); // waits
 
+    // What frames with these settings compile, for those who compile ahead: shaders and their constants.
+    std::vector<std::pair<std::string, Variant>> stagesFor(const Settings& settings, bool cameraMoves = false) const;
+    // A stage of the caller's own over what frames leave behind, and over `more`; it lives until apply().
+    std::unique_ptr<Stage> makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more = {});
+    const Variant& variant() const { return variant_; }
+    PipelinePool& pipelines() { return *pipelines_; }
+    gpu::Device& device() { return device_; }
+
   private:
     void createBuffers();
     void createStages();
-    std::unique_ptr<Stage> makeStage(const char* name, const Variant& variant);
     const Stage& temporal();
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
@@ -93,7 +104,8 @@ class Renderer
     std::map<std::string, double> milliseconds_; // summed over timedFrames_
     std::deque<gpu::Submission> inFlight_;
 
-    std::unique_ptr<scene::GpuScene> scene_;
+    std::shared_ptr<PipelinePool> pipelines_;
+    std::shared_ptr<const scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
     gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;
     std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,

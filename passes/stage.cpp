@@ -27,19 +27,19 @@ bool uses(const gpu::ComputePipeline& pipeline, uint32_t set)
 } // namespace
 
 Stage::Stage(const StageContext& context, const std::string& name, const NamedBuffers& buffers)
-    : pipeline_(context.device.createComputePipeline({.label = name, .constants = constants(context.variant)})),
+    : pipeline_(context.pipelines.get(name, context.variant)),
       frameGroup_(context.device.createBindGroup(
-          {.label = "frame", .pipeline = &pipeline_, .set = SET_FRAME, .buffers = context.frame})),
-      usesScene_(uses(pipeline_, SET_SCENE)),
-      sceneGroup_(usesScene_ ? context.scene.bind(context.device, pipeline_) : gpu::BindGroup()),
+          {.label = "frame", .pipeline = pipeline_.get(), .set = SET_FRAME, .buffers = context.frame})),
+      usesScene_(uses(*pipeline_, SET_SCENE)),
+      sceneGroup_(usesScene_ ? context.scene.bind(context.device, *pipeline_) : gpu::BindGroup()),
       ownGroup_(context.device.createBindGroup(
-          {.label = name, .pipeline = &pipeline_, .set = SET_PASS, .buffers = namedBy(pipeline_, buffers)}))
+          {.label = name, .pipeline = pipeline_.get(), .set = SET_PASS, .buffers = namedBy(*pipeline_, buffers)}))
 {
 }
 
 void Stage::encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const
 {
-    encoder.dispatch({.pipeline = &pipeline_,
+    encoder.dispatch({.pipeline = pipeline_.get(),
                       .groups = {&frameGroup_, usesScene_ ? &sceneGroup_ : nullptr, &ownGroup_},
                       .threads = threads});
 }

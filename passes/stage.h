@@ -8,6 +8,7 @@
 
 #include "engine/gpu/gpu.h"
 #include "engine/scene/gpu_scene.h"
+#include "passes/pipeline_pool.h"
 #include "passes/variant.h"
 
 namespace passes
@@ -18,6 +19,7 @@ using NamedBuffers = std::vector<std::pair<std::string, const gpu::Buffer*>>;
 // What all stages of a renderer share.
 struct StageContext {
     gpu::Device& device;
+    PipelinePool& pipelines;
     const scene::GpuScene& scene;
     const Variant& variant;
     NamedBuffers frame; // set 0
@@ -33,7 +35,7 @@ class Stage
     void encode(gpu::CommandEncoder& encoder, gpu::Threads threads) const;
 
   private:
-    gpu::ComputePipeline pipeline_;
+    std::shared_ptr<const gpu::ComputePipeline> pipeline_;
     gpu::BindGroup frameGroup_;
     bool usesScene_;
     gpu::BindGroup sceneGroup_, ownGroup_;

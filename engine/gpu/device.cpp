@@ -74,7 +74,7 @@ DeviceState::~DeviceState()
 {
     pendingWrites.reset();
     staging.reset();
-    CHECK_EQ(liveObjects, 0u); // every buffer, pipeline and bind group must go before its device
+    CHECK_EQ(liveObjects.load(), 0u); // every buffer, pipeline and bind group must go before its device
     CHECK_EQ(openEncoders, 0u);
     vkDeviceWaitIdle(device); // of a lost device too
     try {

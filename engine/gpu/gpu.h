@@ -258,6 +258,7 @@ class Device
     Queue& queue();
     Buffer
     createBuffer(const BufferDescriptor& descriptor); // zero-filled; throws Error naming the setting when too large
+    // The one thing that other threads may do at the same time; they hand the pipeline over instead of destroying it.
     ComputePipeline createComputePipeline(const ComputePipelineDescriptor& descriptor);
     BindGroup createBindGroup(const BindGroupDescriptor& descriptor);
     CommandEncoder createCommandEncoder(const std::string& label);

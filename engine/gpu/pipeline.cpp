@@ -173,6 +173,7 @@ VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
 
 VkDescriptorSetLayout DeviceState::setLayout(const std::map<uint32_t, VkDescriptorType>& bindings)
 {
+    const std::lock_guard lock(setLayoutsMutex);
     VkDescriptorSetLayout& layout = setLayouts[bindings];
     if (layout) return layout;
     std::vector<VkDescriptorSetLayoutBinding> list;

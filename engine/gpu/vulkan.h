@@ -6,6 +6,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <atomic>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -194,7 +195,7 @@ struct DeviceState {
 
     Submission submitted = 0;
     uint32_t openEncoders = 0;
-    uint32_t liveObjects = 0; // buffers, pipelines, bind groups; must be 0 at the end
+    std::atomic<uint32_t> liveObjects = 0; // buffers, pipelines, bind groups; must be 0 at the end
     uint64_t allocatedBytes = 0;
 
     std::deque<Flight> flights;
@@ -209,6 +210,7 @@ struct DeviceState {
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;
     std::unique_ptr<BufferState> staging;
+    std::mutex setLayoutsMutex; // pipelines are created by several threads
     std::map<std::map<uint32_t, VkDescriptorType>, VkDescriptorSetLayout> setLayouts;
 
     // Replaceable, so that a test can lose the device.

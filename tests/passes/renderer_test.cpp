@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -132,6 +133,44 @@ TEST_F(RendererTest, IsIndependentOfUnits)
     large.cameras[0].position *= 1024.0;
     Renderer far(device(), large, settings_);
     EXPECT_EQ(frames(far, 2), pixels);
+}
+
+TEST_F(RendererTest, ASiblingSharesTheSceneAndGivesItsOwnPixels)
+{
+    passes::Settings other = settings_;
+    other.method = passes::Method::RgbRestir;
+    other.seed = 3;
+    Renderer alone = make(other), first = make(settings_);
+    const Pixels expected = frames(alone, 2);
+    Renderer sibling(first, other);
+    EXPECT_EQ(frames(sibling, 1).size(), expected.size());
+    frames(first, 1);
+    EXPECT_EQ(frames(sibling, 1), expected);
+    EXPECT_EQ(sibling.stats().sceneBytes, first.stats().sceneBytes);
+}
+
+// The list for those who compile ahead and the stages that really ran.
+TEST_F(RendererTest, ListsTheStagesThatItsFramesConsistOf)
+{
+    Renderer renderer = make(settings_);
+    std::vector<passes::Settings> all(4, settings_);
+    all[1].method = passes::Method::RestirPt;
+    all[2].method = passes::Method::RgbRestir;
+    all[2].spatial = 0;
+    all[3].method = passes::Method::RestirPt;
+    all[3].temporal = false;
+    for (const passes::Settings& settings : all) {
+        renderer.apply(settings);
+        frames(renderer, 2);
+        std::set<std::string> listed, ran;
+        for (const auto& [name, variant] : renderer.stagesFor(settings)) listed.insert(name);
+        for (const auto& [name, milliseconds] : renderer.stats().stageMilliseconds) ran.insert(name);
+        EXPECT_EQ(listed, ran);
+    }
+    const Pixels before = frames(renderer, 1);
+    renderer.pipelines().clear();
+    renderer.recompile();
+    EXPECT_EQ(frames(renderer, 3), before);
 }
 
 } // namespace
