@@ -1,17 +1,15 @@
 #include "ui/cli/settings_options.h"
 
 #include "engine/base/error.h"
-#include "engine/base/files.h"
+#include "ui/cli/presets.h"
 
-#include <nlohmann/json.hpp>
+#include <fmt/ranges.h>
 
 namespace ui
 {
 
 namespace
 {
-
-constexpr uint64_t MAX_PRESET_BYTES = 1 << 20;
 
 std::pair<std::string, std::string> split(const std::string& assignment)
 {
@@ -32,25 +30,14 @@ std::string complaint(const std::string& name, const std::string& value)
     }
 }
 
-void applyPreset(passes::Settings& settings, const std::string& file)
-{
-    const std::vector<std::byte> bytes = files::read(file, MAX_PRESET_BYTES);
-    whileDoing(fmt::format("reading preset \"{}\"", file), [&] {
-        try {
-            const char* text = reinterpret_cast<const char*>(bytes.data());
-            passes::apply(settings, nlohmann::ordered_json::parse(text, text + bytes.size()));
-        } catch (const nlohmann::json::parse_error& error) {
-            throw Error("The preset is not JSON: {}.", error.what());
-        }
-    });
-}
-
 } // namespace
 
 void SettingsOptions::addTo(CLI::App& app)
 {
-    app.add_option("--preset", preset_, "JSON file of settings by name; the other options win over it.")
-        ->option_text("FILE")
+    app.add_option("--preset", preset_,
+                   fmt::format("JSON file of settings by name, or one of: {}. The other options win over it.",
+                               fmt::join(presetNames(), ", ")))
+        ->option_text("FILE|NAME")
         ->group("Settings");
     app.add_option("--set", assignments_, "One setting by name, as often as needed; its own option wins over it.")
         ->option_text("NAME=VALUE")
