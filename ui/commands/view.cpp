@@ -34,8 +34,11 @@ Action setUpView(CLI::App& app)
     command->window.order.scene = "hall";
     app.add_option("SCENE", command->window.order.scene,
                    "A .gltf or .glb file, or a built-in scene; without one: hall.");
+    app.add_option("--reference", command->window.reference,
+                   "Picture to measure errors against over time: EXR, or a PNG that this program wrote.")
+        ->option_text("FILE");
     app.add_option("--report", command->window.report,
-                   "Keeps writing what the window shows, for scripts: settings, frames, camera, messages.")
+                   "Keeps writing what the window shows, for scripts: settings, frames, camera, errors, messages.")
         ->option_text("FILE.json");
     command->window.device.addTo(app);
     command->settings.addTo(app);

@@ -1,13 +1,10 @@
 #include "ui/window/panel.h"
 
-#include "passes/variant.h"
+#include "ui/cli/presets.h"
+#include "ui/window/compare_room.h"
+#include "ui/window/pixel_room.h"
 
-#include <algorithm>
-#include <cinttypes>
-
-#include <fmt/format.h>
-#include <imgui.h>
-#include <imgui_stdlib.h>
+#include <filesystem>
 
 namespace ui
 {
@@ -15,103 +12,9 @@ namespace ui
 namespace
 {
 
-const ImVec4 GREEN = {0.45f, 0.85f, 0.5f, 1}, AMBER = {1.0f, 0.75f, 0.3f, 1}, GRAY = {0.65f, 0.65f, 0.68f, 1};
+using namespace colors;
 
-void remember(PanelState& state, const std::string& name)
-{
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    state.places[name] = {int(low.x + high.x) / 2, int(low.y + high.y) / 2};
-}
-
-void explain(const char* text)
-{
-    if (!ImGui::IsItemHovered()) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::TextUnformatted(text);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-}
-
-// Enumerations are told from their words: one button each.
-template <class T>
-requires std::is_enum_v<T>
-void edit(PanelState& state, const passes::Knob& knob, T& value, std::initializer_list<const char*> labels)
-{
-    ImGui::TextUnformatted(knob.name);
-    explain(knob.doc);
-    int i = 0;
-    for (const char* label : labels) {
-        if (i > 0) ImGui::SameLine();
-        if (ImGui::RadioButton(fmt::format("{}##{}", label, knob.name).c_str(), int(value) == i)) value = T(i);
-        remember(state, fmt::format("{}.{}", knob.name, i));
-        explain(knob.doc);
-        ++i;
-    }
-}
-
-void edit(PanelState& state, const passes::Knob& knob, passes::Method& value)
-{
-    edit(state, knob, value, {"off (pt)", "luminance", "RGB", "grouped"});
-}
-void edit(PanelState& state, const passes::Knob& knob, passes::Shift& value)
-{
-    edit(state, knob, value, {"replay", "reconnection", "hybrid"});
-}
-void edit(PanelState& state, const passes::Knob& knob, passes::PixelFilter& value)
-{
-    edit(state, knob, value, {"center", "box"});
-}
-void edit(PanelState& state, const passes::Knob& knob, bool& value)
-{
-    ImGui::Checkbox(knob.name, &value);
-    remember(state, knob.name);
-    explain(knob.doc);
-}
-void edit(PanelState& state, const passes::Knob& knob, uint32_t& value)
-{
-    const uint32_t low = uint32_t(knob.low), high = uint32_t(knob.high);
-    const auto flags = ImGuiSliderFlags_AlwaysClamp | (high > 1000 ? ImGuiSliderFlags_Logarithmic : 0);
-    ImGui::SliderScalar(knob.name, ImGuiDataType_U32, &value, &low, &high, "%u", flags);
-    remember(state, knob.name);
-    explain(knob.doc);
-}
-void edit(PanelState& state, const passes::Knob& knob, float& value)
-{
-    ImGui::SliderFloat(knob.name, &value, float(knob.low), float(knob.high), "%.3g",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    remember(state, knob.name);
-    explain(knob.doc);
-}
-void edit(PanelState&, const passes::Knob& knob, double& value)
-{
-    ImGui::InputDouble(knob.name, &value);
-    explain(knob.doc);
-}
-void edit(PanelState& state, const passes::Knob& knob, uint64_t& value)
-{
-    ImGui::InputScalar(knob.name, ImGuiDataType_U64, &value, nullptr, nullptr, "%" PRIu64,
-                       ImGuiInputTextFlags_EnterReturnsTrue);
-    remember(state, knob.name);
-    explain(knob.doc);
-}
-void edit(PanelState&, const passes::Knob& knob, std::string& value)
-{
-    std::string text = value;
-    if (ImGui::InputText(knob.name, &text, ImGuiInputTextFlags_EnterReturnsTrue)) value = text;
-    explain(knob.doc);
-}
-void edit(PanelState&, const passes::Knob& knob, passes::SizeField<uint32_t>&& size)
-{
-    int values[2] = {int(size.width), int(size.height)};
-    if (ImGui::InputInt2(knob.name, values, ImGuiInputTextFlags_EnterReturnsTrue)) {
-        size.width = uint32_t(std::clamp(values[0], 1, 8192));
-        size.height = uint32_t(std::clamp(values[1], 1, 8192));
-    }
-    explain(knob.doc);
-}
-
-void drawBadge(const std::shared_ptr<const Shot>& shot)
+void drawBadge(const ShotPointer& shot)
 {
     if (!shot) return;
     uint64_t lost = 0;
@@ -129,23 +32,80 @@ void drawBadge(const std::shared_ptr<const Shot>& shot)
         "out.");
 }
 
-template <class Value>
-void drawTable(const char* title, const std::map<std::string, Value>& rows, const char* format)
+void drawActivity(const WindowState& state)
 {
-    if (!ImGui::TreeNode(title)) return;
-    for (const auto& [name, value] : rows) {
-        ImGui::TextColored(GRAY, "%s", name.c_str());
-        ImGui::SameLine(ImGui::GetFontSize() * 14);
-        ImGui::TextUnformatted(fmt::format(fmt::runtime(format), value).c_str());
+    if (!state.activity.empty())
+        ImGui::TextColored(AMBER, "%s", state.activity.c_str());
+    else if (!state.ahead.empty())
+        ImGui::TextColored(GRAY, "%s (ahead)", state.ahead.c_str());
+    else
+        ImGui::TextColored(GRAY, "%s", state.order.paused ? "Paused" : "Rendering");
+}
+
+// Scene, presets, and what goes back and forth.
+void drawFiles(WindowState& state)
+{
+    if (ImGui::Button("Open...")) ImGui::OpenPopup("open");
+    remember(state.places, "open");
+    explain("Recent scenes and built-in ones; or drop a .gltf or .glb file into the window.");
+    if (ImGui::BeginPopup("open")) {
+        for (size_t i = 0; i < state.recent.size(); ++i) {
+            const std::string name = std::filesystem::path(state.recent[i]).filename();
+            if (ImGui::MenuItem(fmt::format("{}##{}", name, i).c_str())) state.requests.file = state.recent[i];
+            remember(state.places, fmt::format("recent.{}", i));
+            explain(state.recent[i].c_str());
+        }
+        ImGui::EndPopup();
     }
-    ImGui::TreePop();
+    ImGui::SameLine();
+    if (ImGui::Button("Preset...")) ImGui::OpenPopup("preset");
+    remember(state.places, "preset");
+    explain(
+        "Sets several settings at once; the others stay. A preset's JSON file can be dropped into the window, too.");
+    if (ImGui::BeginPopup("preset")) {
+        for (const std::string& name : presetNames()) {
+            if (ImGui::MenuItem(name.c_str())) state.requests.preset = name;
+            remember(state.places, "preset." + name);
+        }
+        ImGui::EndPopup();
+    }
+    ImGui::SameLine();
+    const auto step = [&](const char* label, bool can, const char* name, const char* doc) {
+        if (!can) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.4f);
+        const bool pressed = button(state.places, label, name, doc) && can;
+        if (!can) ImGui::PopStyleVar();
+        return pressed;
+    };
+    state.requests.undo |= step("Undo", state.canUndo, "undo", "The settings as before the last change (Ctrl+Z).");
+    ImGui::SameLine();
+    state.requests.redo |= step("Redo", state.canRedo, "redo", "Takes the undoing back (Ctrl+Y).");
+    ImGui::SameLine();
+    if (button(state.places, "F1", "help", "All keys.")) state.help = !state.help;
+}
+
+void drawRun(WindowState& state)
+{
+    Order& order = state.order;
+    if (button(state.places, order.paused ? "Go on" : "Pause", "pause", "Space")) order.paused = !order.paused;
+    ImGui::SameLine();
+    if (button(state.places, "Step", "step", "One frame, then pause (N).")) order.paused = true, ++order.steps;
+    ImGui::SameLine();
+    if (button(state.places, "Restart", "restart", "From the first frame again (R).")) ++order.restarts;
+    ImGui::SameLine();
+    state.requests.resetView |=
+        button(state.places, "Reset view", "reset-view", "The camera as the scene has it (Home).");
+    ImGui::SameLine();
+    state.requests.screenshot |=
+        button(state.places, "Save", "screenshot",
+               "PNG, EXR and preset into the working directory; the render line that gives the same pixels goes to the "
+               "clipboard (F12).");
 }
 
 void drawFigures(const Shot& shot)
 {
     const passes::RenderStats& stats = shot.stats;
-    ImGui::Text("%llu frames, %.1f ms each, %.2f M rays/s", static_cast<unsigned long long>(shot.frames),
-                shot.frameMilliseconds, shot.raysPerSecond / 1e6);
+    ImGui::Text("%llu frames in %.1f s, %.1f ms each, %.2f M rays/s", static_cast<unsigned long long>(shot.frames),
+                shot.seconds, shot.frameMilliseconds, shot.raysPerSecond / 1e6);
     ImGui::Text("%.1f MB, %.0f bytes per pixel, compiled in %.2f s", double(stats.memoryBytes) / 1e6,
                 stats.bytesPerPixel, stats.compileSeconds);
     ImGui::TextColored(GRAY, "%s", shot.adapter.name.c_str());
@@ -158,85 +118,95 @@ void drawFigures(const Shot& shot)
 
 } // namespace
 
-void drawPanel(PanelState& state, const std::shared_ptr<const Shot>& shot, const std::string& activity, float scale)
+void drawPanel(WindowState& state)
 {
+    if (state.hidden) return;
     ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({PANEL_WIDTH * scale, ImGui::GetIO().DisplaySize.y});
+    ImGui::SetNextWindowSize({state.panelWidth(), ImGui::GetIO().DisplaySize.y});
     ImGui::Begin("Trichrome", nullptr,
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                     ImGuiWindowFlags_NoTitleBar);
+                     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PushItemWidth(-ImGui::GetFontSize() * 10);
+    const ShotPointer& shot = state.pictures.sides[state.editing];
     drawBadge(shot);
-    if (activity.empty())
-        ImGui::TextColored(GRAY, "%s", state.order.paused ? "Paused" : "Rendering");
-    else
-        ImGui::TextColored(AMBER, "%s", activity.c_str());
-    ImGui::Separator();
-
-    passes::Settings& settings = state.order.settings;
-    // The three that this window is for come first; the rest in the list's own order. Frames and seconds say when
-    // `render` stops; here the picture goes on until paused.
-    const auto visit = [&](auto&& wanted) {
-        passes::visitSettings(settings, [&]<class T>(const passes::Knob& knob, T&& field) {
-            if (wanted(std::string(knob.name))) edit(state, knob, std::forward<T>(field));
-        });
-    };
-    const auto first = [](const std::string& name) {
-        return name == "method" || name == "shift" || name == "max-confidence";
-    };
-    visit(first);
-    ImGui::Separator();
-    visit([&](const std::string& name) { return !first(name) && name != "frames" && name != "seconds"; });
-
-    ImGui::Separator();
-    ImGui::SliderFloat("exposure", &state.tone.stops, -10, 10, "%+.2f stops");
-    int curve = int(state.tone.curve);
-    if (ImGui::Combo("tone curve", &curve, "Reinhard\0ACES-like\0none\0")) state.tone.curve = ToneCurve(curve);
-
-    if (ImGui::Button(state.order.paused ? "Go on" : "Pause")) state.order.paused = !state.order.paused;
-    remember(state, "pause");
-    ImGui::SameLine();
-    if (ImGui::Button("Step")) state.order.paused = true, ++state.order.steps;
-    ImGui::SameLine();
-    if (ImGui::Button("Restart")) ++state.order.restarts;
-    ImGui::SameLine();
-    state.resetView |= ImGui::Button("Reset view");
-    ImGui::SameLine();
-    state.screenshot |= ImGui::Button("Save");
-    remember(state, "screenshot");
-    ImGui::SameLine();
-    if (ImGui::Button("F1")) state.help = !state.help;
-
+    drawActivity(state);
     if (!state.message.empty()) {
-        ImGui::Separator();
         ImGui::PushTextWrapPos();
         ImGui::TextColored(AMBER, "%s", state.message.c_str());
         ImGui::PopTextWrapPos();
     }
+    drawFiles(state);
+    drawRun(state);
+    ImGui::Separator();
+
+    // The three that this window is for come first; the rest in the list's own order. Frames and seconds say when
+    // `render` stops; here the picture goes on until paused. What B shares with A is in A's list only.
+    const auto first = [](const std::string& name) {
+        return name == "method" || name == "shift" || name == "max-confidence";
+    };
+    const auto world = [](const std::string& name) {
+        return name == "size" || name == "camera" || name == "environment" || name == "environment-scale";
+    };
+    const auto seldom = [&](const std::string& name) {
+        return name == "seed" || name == "average" || (world(name) && name != "size");
+    };
+    const auto shown = [&](const std::string& name) {
+        return !first(name) && name != "frames" && name != "seconds" && !(state.editing == B && world(name));
+    };
+    editSettings(state.places, state.edited(), first);
+    ImGui::Separator();
+    drawCompareRoom(state);
+    ImGui::Separator();
+    editSettings(state.places, state.edited(), [&](const std::string& name) { return shown(name) && !seldom(name); });
+    if (ImGui::TreeNode("Seed, camera, environment")) {
+        editSettings(state.places, state.edited(),
+                     [&](const std::string& name) { return shown(name) && seldom(name); });
+        ImGui::TreePop();
+    }
+    ImGui::Separator();
+    ImGui::SliderFloat("exposure", &state.tone.stops, -10, 10, "%+.2f stops");
+    remember(state.places, "exposure");
+    int curve = int(state.tone.curve);
+    if (ImGui::Combo("tone curve", &curve, "Reinhard\0ACES-like\0none\0")) state.tone.curve = ToneCurve(curve);
+    remember(state.places, "tone-curve");
+    drawFalseColorRoom(state);
     ImGui::Separator();
     if (shot) drawFigures(*shot);
     ImGui::PopItemWidth();
     ImGui::End();
 }
 
-void drawHelp(bool& open)
+void drawHelp(WindowState& state)
 {
-    if (!open) return;
-    ImGui::SetNextWindowPos({PANEL_WIDTH + 40, 40}, ImGuiCond_Appearing);
-    if (ImGui::Begin("Keys", &open, ImGuiWindowFlags_AlwaysAutoResize))
-        ImGui::TextUnformatted("left drag      orbit around the target\n"
+    if (!state.help) return;
+    ImGui::SetNextWindowPos({state.panelWidth() + 20 * state.scale, 20 * state.scale}, ImGuiCond_Appearing);
+    if (ImGui::Begin("Keys", &state.help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings))
+        ImGui::TextUnformatted("left drag      orbit around the target; on the split's line: move it\n"
                                "right drag     look around\n"
                                "middle drag    pan\n"
                                "wheel          nearer, farther\n"
                                "W A S D Q E    fly (Shift: faster)\n"
+                               "1 to 9         go to a bookmark; with Ctrl: set it here\n"
                                "Home           reset the view\n"
+                               "\n"
+                               "C              compare with B; again: A alone\n"
+                               "Tab            flip between the two pictures\n"
+                               "F              freeze the picture as reference\n"
+                               "P              error over time\n"
+                               "X              the next false colors\n"
+                               "I              inspect the pixel under the mouse\n"
+                               "\n"
                                "Space          pause, go on\n"
                                "N              one frame\n"
                                "R              from the first frame again\n"
-                               "F12            save PNG, EXR and preset; the render line goes to the clipboard\n"
-                               "F1             this list\n"
+                               "Ctrl+Z Ctrl+Y  undo and redo settings\n"
                                "Ctrl+click     type a slider's exact value\n"
-                               "Drop           .gltf, .glb: scene; .json: preset");
+                               "F12            save PNG, EXR and preset; the render line goes to the clipboard\n"
+                               "H              hide the panel\n"
+                               "F1             this list\n"
+                               "\n"
+                               "Drop a file    .gltf, .glb: scene; .json: preset; .exr, .png: reference");
     ImGui::End();
 }
 

@@ -4,7 +4,6 @@
 #include "passes/camera_choice.h"
 #include "ui/cli/scene_source.h"
 
-#include <algorithm>
 #include <chrono>
 #include <unistd.h>
 
@@ -14,55 +13,25 @@ namespace ui
 namespace
 {
 
-using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
 
-constexpr uint32_t MOVING_DIVISOR = 2;       // of width and height while the camera moves
-constexpr double PUBLISH_SECONDS = 1.0 / 60; // no more pictures than a screen shows
-constexpr int BACKGROUND = 5;                // nice: the window's thread comes first where the device is the CPU
-
-double secondsSince(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// What is on the device for the settings: a part of the resolution while the camera moves.
-passes::Settings effective(const Order& order)
-{
-    passes::Settings settings = order.settings;
-    if (order.moving) {
-        settings.width = std::max(settings.width / MOVING_DIVISOR, 1u);
-        settings.height = std::max(settings.height / MOVING_DIVISOR, 1u);
-    }
-    return settings;
-}
-
-// Settings that only say which picture is read, or when `render` stops.
-passes::Settings withoutReading(passes::Settings settings)
-{
-    settings.average = true;
-    settings.frames = 1;
-    settings.seconds = 0;
-    return settings;
-}
-
-bool sameWorld(const Order& a, const Order& b)
-{
-    return a.scene == b.scene && a.settings.environment == b.settings.environment &&
-           a.settings.environmentScale == b.settings.environmentScale;
-}
-
-uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
-{
-    uint64_t sum = 0;
-    for (const auto& [name, count] : counts) sum += count;
-    return sum;
-}
+constexpr int BACKGROUND = 5;          // nice: the window's thread comes first where the device is the CPU
+constexpr auto WATCH_INTERVAL = 300ms; // between looks at the shaders
 
 } // namespace
 
-RenderThread::RenderThread(const DeviceOptions& device, std::function<void()> wake)
-    : deviceOptions_(device), wake_(std::move(wake)), thread_([this] { run(); })
+RenderThread::RenderThread(std::function<gpu::Device()> open, const std::string& shaders, std::function<void()> wake)
+    : open_(std::move(open)), shaderDirectory_(shaders), wake_(std::move(wake)), compiler_(open_, [this] {
+          {
+              const std::lock_guard lock(mutex_);
+              news_ = true;
+          }
+          changed_.notify_all();
+          wake_();
+      })
 {
+    if (!shaders.empty()) watcher_.emplace(shaders);
+    thread_ = std::thread([this] { run(); });
 }
 
 RenderThread::~RenderThread()
@@ -86,10 +55,10 @@ void RenderThread::order(const Order& order)
     changed_.notify_all();
 }
 
-std::shared_ptr<const Shot> RenderThread::shot() const
+ShotPointer RenderThread::shot(Side side) const
 {
     const std::lock_guard lock(mutex_);
-    return shot_;
+    return shots_[side];
 }
 
 std::shared_ptr<const SceneFacts> RenderThread::scene() const
@@ -101,7 +70,12 @@ std::shared_ptr<const SceneFacts> RenderThread::scene() const
 std::string RenderThread::activity() const
 {
     const std::lock_guard lock(mutex_);
-    return activity_;
+    return activity_.empty() && pending_ ? compiler_.activity() : activity_;
+}
+
+std::string RenderThread::ahead() const
+{
+    return compiler_.activity();
 }
 
 std::optional<std::string> RenderThread::takeFailure(Order& back)
@@ -141,15 +115,20 @@ void RenderThread::run()
         Order order;
         {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] {
-                const bool idle = !renderer_ || (running_.paused && running_.steps >= wanted_.steps);
+            const auto due = [&] {
+                const bool idle = !sides_[A] || (running_.paused && running_.steps >= wanted_.steps);
                 return stop_ || news_ || !idle;
-            });
+            };
+            if (watcher_)
+                changed_.wait_for(lock, WATCH_INTERVAL, due);
+            else
+                changed_.wait(lock, due);
             if (stop_) break;
             order = wanted_;
             news_ = false;
         }
         try {
+            reloadShaders();
             follow(order);
         } catch (const std::bad_alloc&) {
             fail("Out of memory.");
@@ -157,8 +136,26 @@ void RenderThread::run()
             fail(error.what());
         }
     }
-    renderer_.reset();
+    closeDevice();
+}
+
+void RenderThread::closeDevice()
+{
+    compiler_.serve(nullptr);
+    for (std::unique_ptr<Contender>& side : sides_) side.reset();
     device_.reset();
+}
+
+bool RenderThread::sameWorld(const Order& order) const
+{
+    const passes::Settings &next = order.settings, &now = running_.settings;
+    if (order.scene != running_.scene || next.environment != now.environment ||
+        next.environmentScale != now.environmentScale)
+        return false;
+    const auto parallel = [&](const std::string& name) { // what is compiled depends on it
+        return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
+    };
+    return next.camera == now.camera || parallel(next.camera) == parallel(now.camera);
 }
 
 void RenderThread::follow(const Order& order)
@@ -166,24 +163,29 @@ void RenderThread::follow(const Order& order)
     if (order.scene.empty()) return;
     if (!device_) {
         say("Opening the device");
-        device_ = std::make_unique<gpu::Device>(deviceOptions_.open());
+        device_ = std::make_unique<gpu::Device>(open_());
+        compiler_.serve(device_.get());
     }
-    if (!renderer_ || !sameWorld(order, running_))
-        load(order);
-    else
-        tune(order);
     {
         const std::lock_guard lock(mutex_);
-        good_ = order;
+        pending_ = false;
     }
-    const bool step = order.steps > running_.steps;
-    const bool due = !order.paused || step || renderer_->frameCount() == 0;
-    running_ = order;
+    if (!sides_[A] || !sameWorld(order))
+        load(order);
+    else
+        tune(order, A);
+    tune(order, B);
+    {
+        const std::lock_guard lock(mutex_);
+        if (!pending_) good_ = order;
+    }
+    const bool changed = order != running_;
+    if (changed) compileAhead(order);
     say("");
-    if (due) renderAndPublish(order);
+    renderAndPublish(order, changed);
 }
 
-// The old renderer stays until the new one is there.
+// The old pictures stay until the new ones are there.
 void RenderThread::load(const Order& order)
 {
     say("Loading the scene");
@@ -193,91 +195,121 @@ void RenderThread::load(const Order& order)
         }));
     say("Building the BVH");
     int shown = -1;
-    auto renderer = std::make_unique<passes::Renderer>(*device_, *world, effective(order), [&](double fraction) {
+    auto renderer = std::make_unique<passes::Renderer>(*device_, *world, settingsOf(order, A), [&](double fraction) {
         const int percent = int(100 * fraction);
         if (percent != shown) say(fmt::format("Building the BVH: {}%", shown = percent));
         if (percent >= 100) say("Compiling");
     });
-    renderer_ = std::move(renderer);
+    sides_[B].reset(); // of the old scene
+    sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
-    place(order);
+    compiler_.learn(sides_[A]->renderer().stagesFor(settingsOf(order, A)));
     const SceneFacts facts{order.scene, scene_->cameras, scene_->origin, scene_->warnings};
-    {
+    const std::lock_guard lock(mutex_);
+    sceneFacts_ = std::make_shared<const SceneFacts>(facts);
+}
+
+// A side whose new settings are not compiled yet goes on with the old ones.
+void RenderThread::tune(const Order& order, Side side)
+{
+    std::unique_ptr<Contender>& contender = sides_[side];
+    if (side == B && !order.rival) {
+        contender.reset();
+        publish(B, nullptr);
+        return;
+    }
+    passes::Renderer& renderer = sides_[A]->renderer();
+    const passes::Settings next = settingsOf(order, side);
+    const bool runs = contender && contender->renderer().settings() == next;
+    if (!runs && !compiler_.ready(renderer.stagesFor(next, order.moving))) {
         const std::lock_guard lock(mutex_);
-        sceneFacts_ = std::make_shared<const SceneFacts>(facts);
+        pending_ = true;
+        return;
     }
-    raysBefore_ = 0;
+    compiler_.handOver(renderer.pipelines());
+    if (contender)
+        contender->follow(order, *scene_);
+    else
+        contender =
+            std::make_unique<Contender>(std::make_unique<passes::Renderer>(renderer, next), *scene_, order, side);
 }
 
-// Anything that changes the estimate starts over: a mean over two settings would be the picture of neither, and no
-// command line could repeat it. While the camera moves, reuse goes on from frame to frame.
-void RenderThread::tune(const Order& order)
+// What one more click would ask for, the likeliest first.
+void RenderThread::compileAhead(const Order& order)
 {
-    const passes::Settings next = effective(order), now = renderer_->settings();
-    const bool cameraChanged = order.pose != running_.pose || next.camera != now.camera;
-    const bool settingsChanged = withoutReading(next) != withoutReading(now);
-    if (next.camera != now.camera) {
-        const auto kind = [&](const std::string& name) {
-            return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
-        };
-        if (kind(next.camera) != kind(now.camera)) {
-            load(order); // what is compiled depends on the kind of camera
-            return;
-        }
+    CompileAhead::Stages stages;
+    const auto add = [&](const passes::Settings& settings) {
+        for (auto& stage : sides_[A]->renderer().stagesFor(settings)) stages.push_back(std::move(stage));
+    };
+    const passes::Settings settings = settingsOf(order, A);
+    stages = sides_[A]->renderer().stagesFor(settings, true); // a moved camera
+    using passes::Method, passes::Shift;
+    for (const Method method : {Method::RgbRestir, Method::RestirPt, Method::Pt}) {
+        passes::Settings other = settings;
+        other.method = method;
+        add(other);
     }
-    if (next != now) {
-        if (settingsChanged) say("Compiling for " + passes::toText(next).front().second);
-        try {
-            renderer_->apply(next);
-        } catch (...) {
-            renderer_->apply(now); // such as a picture too large for the device
-            throw;
-        }
+    for (const Shift shift : {Shift::Hybrid, Shift::Reconnection, Shift::Replay}) {
+        passes::Settings other = settings;
+        if (other.method == Method::Pt) other.method = Method::RgbRestir;
+        other.shift = shift;
+        add(other);
     }
-    if (cameraChanged || next.width != now.width || next.height != now.height) place(order);
-    const bool stands = !order.moving && (cameraChanged || running_.moving);
-    if (settingsChanged || stands || order.restarts != running_.restarts) {
-        renderer_->reset();
-        raysBefore_ = 0;
-    }
+    compiler_.later(stages);
 }
 
-void RenderThread::place(const Order& order)
+void RenderThread::reloadShaders()
 {
-    const scene::Camera& base = scene_->cameras[passes::chooseCamera(*scene_, order.settings.camera)];
-    renderer_->setCamera(order.pose ? cameraOf(*order.pose, base, scene_->origin) : base);
-}
-
-void RenderThread::renderAndPublish(const Order& order)
-{
-    const auto start = Clock::now();
-    const uint64_t before = renderer_->frameCount();
-    const bool once = order.paused || order.moving;
+    if (!watcher_ || !sides_[A]) return;
+    if (watcher_->changed()) {
+        compiler_.forget();
+        reload_ = true;
+    }
+    if (!reload_) return;
     try {
-        do renderer_->renderFrame(), renderer_->wait();
-        while (!once && secondsSince(start) < PUBLISH_SECONDS);
+        CompileAhead::Stages stages;
+        for (const std::unique_ptr<Contender>& side : sides_)
+            if (side)
+                for (auto& stage : side->renderer().stagesFor(side->renderer().settings())) stages.push_back(stage);
+        if (!compiler_.ready(stages)) return;
+        reload_ = false;
+        passes::PipelinePool& pool = sides_[A]->renderer().pipelines();
+        pool.clear();
+        compiler_.handOver(pool);
+        for (const std::unique_ptr<Contender>& side : sides_)
+            if (side) side->recompile();
+    } catch (const Error& error) {
+        reload_ = false;
+        throw Error("The shaders in \"{}\" have changed and do not compile; the old ones go on. {}", shaderDirectory_,
+                    error.what());
+    }
+}
 
-        auto shot = std::make_shared<Shot>();
-        shot->single = order.moving || !order.settings.average;
-        shot->picture = shot->single ? renderer_->readFrame() : renderer_->readMean();
-        shot->order = order;
-        shot->order.settings = renderer_->settings();
-        shot->frames = renderer_->frameCount();
-        shot->stats = renderer_->stats();
-        shot->adapter = device_->adapter();
-        const double seconds = secondsSince(start);
-        const uint64_t rays = sumOf(shot->stats.rays);
-        shot->frameMilliseconds = 1000 * seconds / double(shot->frames - before);
-        shot->raysPerSecond = double(rays - std::min(rays, raysBefore_)) / seconds;
-        raysBefore_ = rays;
-        const std::lock_guard lock(mutex_);
-        shot_ = std::move(shot);
-    } catch (const Error&) {
-        renderer_.reset(); // a lost device: the next order tries with a new one
-        device_.reset();
-        throw;
+void RenderThread::renderAndPublish(const Order& order, bool changed)
+{
+    const bool step = order.steps > running_.steps, once = order.paused || order.moving;
+    running_ = order;
+    try {
+        for (const Side side : {A, B}) {
+            if (!sides_[side]) continue;
+            Contender& contender = *sides_[side];
+            const Contender* other = sides_[side == A ? B : A].get();
+            const bool behind = !other || contender.seconds() <= other->seconds(); // both get the same time
+            const bool due = once ? !order.paused || step : behind;
+            if (due || contender.frames() == 0) contender.render(once);
+            if (due || changed || contender.frames() == 1) publish(side, contender.shot(order));
+        }
+    } catch (const Error& error) {
+        closeDevice();
+        throw Error("{} R opens the device again.", error.what());
     }
     wake_();
+}
+
+void RenderThread::publish(Side side, ShotPointer shot)
+{
+    const std::lock_guard lock(mutex_);
+    shots_[side] = std::move(shot);
 }
 
 } // namespace ui

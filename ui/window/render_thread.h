@@ -10,61 +10,30 @@
 #include <string>
 #include <thread>
 
-#include "engine/gpu/gpu.h"
-#include "engine/image/image.h"
-#include "passes/renderer.h"
-#include "ui/cli/device_options.h"
-#include "ui/window/pose.h"
+#include "engine/gpu/shader_watcher.h"
+#include "ui/window/compile_ahead.h"
+#include "ui/window/contender.h"
+#include "ui/window/order.h"
 
 namespace ui
 {
 
-// What the window wants to see.
-struct Order {
-    std::string scene; // empty: nothing yet
-    passes::Settings settings;
-    std::optional<Pose> pose; // empty: the camera that the settings name
-    bool moving = false;      // the camera: single frames at a part of the resolution, no film
-    bool paused = false;
-    uint64_t restarts = 0; // how often "from the first frame again" was asked for
-    uint64_t steps = 0;    // how many single frames were asked for while paused
-    bool operator==(const Order&) const = default;
-};
-
-// What a scene offers to the window.
-struct SceneFacts {
-    std::string name; // as ordered
-    std::vector<scene::Camera> cameras;
-    glm::dvec3 origin = {0, 0, 0};
-    std::vector<std::string> warnings;
-};
-
-// One finished picture and how it came about.
-struct Shot {
-    image::Image picture;
-    Order order; // its settings are the running ones; the size is that of the picture
-    uint64_t frames = 0;
-    bool single = false; // the last frame alone, not the mean
-    passes::RenderStats stats;
-    gpu::Adapter adapter;
-    double frameMilliseconds = 0; // wall, from frame to frame
-    double raysPerSecond = 0;
-};
-
 class RenderThread
 {
   public:
-    // `wake` is called from the thread whenever there is something new.
-    RenderThread(const DeviceOptions& device, std::function<void()> wake);
+    // `open` gives a device, to the thread itself and to the one that compiles ahead. `shaders`: a directory to watch
+    // for changes, empty: none. `wake` is called from the thread whenever there is something new.
+    RenderThread(std::function<gpu::Device()> open, const std::string& shaders, std::function<void()> wake);
     ~RenderThread(); // ends after the current frame
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
     void order(const Order& order);
 
-    std::shared_ptr<const Shot> shot() const; // the latest; null before the first
+    ShotPointer shot(Side side) const; // the latest; null before the first
     std::shared_ptr<const SceneFacts> scene() const;
-    std::string activity() const; // "Building the BVH: 40%"; empty: rendering, or nothing to do
+    std::string activity() const; // what the order waits for, "Building the BVH: 40%"; empty: nothing
+    std::string ahead() const;    // what is compiled for settings that nobody has asked for yet; empty: nothing
     // Why the last order could not be followed, once; `back` becomes what goes on instead.
     std::optional<std::string> takeFailure(Order& back);
 
@@ -72,31 +41,39 @@ class RenderThread
     void run();
     void follow(const Order& order);
     void load(const Order& order);
-    void tune(const Order& order);
-    void place(const Order& order);
-    void renderAndPublish(const Order& order);
+    bool sameWorld(const Order& order) const;
+    void tune(const Order& order, Side side);
+    void compileAhead(const Order& order);
+    void reloadShaders();
+    void closeDevice();
+    void renderAndPublish(const Order& order, bool changed);
+    void publish(Side side, ShotPointer shot);
     void fail(const std::string& sentence);
     void say(const std::string& activity);
 
-    DeviceOptions deviceOptions_;
+    std::function<gpu::Device()> open_;
+    std::string shaderDirectory_;
     std::function<void()> wake_;
 
-    mutable std::mutex mutex_; // of all up to thread_
+    mutable std::mutex mutex_; // of all up to compiler_
     std::condition_variable changed_;
     Order wanted_;
     bool news_ = false, stop_ = false;
-    std::shared_ptr<const Shot> shot_;
+    bool pending_ = false; // a side goes on with its old settings until the new ones are compiled
+    ShotPointer shots_[SIDES];
     std::shared_ptr<const SceneFacts> sceneFacts_;
     std::string activity_;
     std::optional<std::string> failure_;
     Order good_; // the last order that was followed
+    CompileAhead compiler_;
 
     // The thread's own.
+    std::optional<gpu::ShaderWatcher> watcher_;
+    bool reload_ = false;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<scene::Scene> scene_;
-    std::unique_ptr<passes::Renderer> renderer_;
+    std::unique_ptr<Contender> sides_[SIDES];
     Order running_;
-    uint64_t raysBefore_ = 0;
     std::thread thread_; // last: starts when all else is there
 };
 

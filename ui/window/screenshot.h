@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ui/window/render_thread.h"
+#include "ui/window/order.h"
 
 namespace ui
 {

@@ -1,22 +1,28 @@
 #include "ui/window/window.h"
 
 #include "engine/base/error.h"
-#include "engine/base/files.h"
-#include "passes/camera_choice.h"
 #include "ui/cli/output_file.h"
+#include "ui/cli/presets.h"
+#include "ui/window/camera_hands.h"
+#include "ui/window/compare_room.h"
+#include "ui/window/frame.h"
 #include "ui/window/panel.h"
+#include "ui/window/pixel_room.h"
+#include "ui/window/plots.h"
 #include "ui/window/presenter.h"
+#include "ui/window/render_thread.h"
 #include "ui/window/screenshot.h"
+#include "ui/window/undo_list.h"
+#include "ui/window/window_report.h"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <deque>
 #include <filesystem>
+#include <future>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_vulkan.h>
 #include <nlohmann/json.hpp>
@@ -27,11 +33,9 @@ namespace ui
 namespace
 {
 
-constexpr double IDLE_SECONDS = 0.1;        // between looks at the world when nothing happens
-constexpr double STILL_SECONDS = 0.25;      // after its last move the camera stands
-constexpr double RADIANS_PER_POINT = 0.006; // of dragging
-constexpr size_t LATENCIES = 1000;          // that percentiles are taken of
-constexpr uint64_t MAX_PRESET_BYTES = 1 << 20;
+constexpr double IDLE_SECONDS = 0.1; // between looks at the world when nothing happens
+constexpr double LOSS_SECONDS = 10;  // a screen's device that is lost twice within this time is given up
+constexpr size_t LATENCIES = 1000;   // that percentiles are taken of
 
 volatile std::sig_atomic_t stopRequested = 0;
 extern "C" void onStop(int)
@@ -39,63 +43,33 @@ extern "C" void onStop(int)
     stopRequested = 1;
 }
 
-// GLFW and ImGui, as long as it lives.
-class Frame
+using SettingsPair = std::pair<passes::Settings, std::optional<passes::Settings>>;
+
+std::string extensionOf(const std::string& file)
 {
-  public:
-    Frame()
-    {
-        glfwSetErrorCallback([](int, const char* text) { lastError() = text; });
-        if (!glfwInit()) throw Error("No window can be shown: {}.", lastError());
-        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-        glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-        if (!glfwVulkanSupported() || !(window = glfwCreateWindow(1280, 720, "Trichrome", nullptr, nullptr))) {
-            const std::string why = window || lastError().empty() ? "there is no Vulkan driver" : lastError();
-            glfwTerminate();
-            throw Error("No window can be shown: {}.", why);
-        }
-        float vertical = 1;
-        glfwGetWindowContentScale(window, &scale, &vertical);
-        ImGui::CreateContext();
-        ImGui::GetIO().IniFilename = nullptr;
-        ImGui::StyleColorsDark();
-        ImGui::GetStyle().ScaleAllSizes(scale);
-        ImFontConfig font;
-        font.SizePixels = std::floor(13 * scale);
-        ImGui::GetIO().Fonts->AddFontDefault(&font);
-    }
-    ~Frame()
-    {
-        ImGui::DestroyContext();
-        glfwDestroyWindow(window);
-        glfwTerminate();
-    }
-    Frame(const Frame&) = delete;
-    Frame& operator=(const Frame&) = delete;
-
-    GLFWwindow* window = nullptr;
-    float scale = 1;
-
-  private:
-    static std::string& lastError()
-    {
-        static std::string text;
-        return text;
-    }
-};
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
 
 class Window
 {
   public:
-    explicit Window(const WindowOptions& options) : options_(options), thread_(options.device, glfwPostEmptyEvent)
+    explicit Window(const WindowOptions& options)
+        : options_(options), memory_(recall(memoryFile())), frame_(memory_.size, memory_.layout),
+          undo_({options.order.settings, options.order.rival}), meter_(glfwPostEmptyEvent),
+          thread_([&device = options_.device] { return device.open(); }, options.device.shaderDirectory(),
+                  glfwPostEmptyEvent)
     {
         state_.order = options.order;
+        state_.scale = frame_.scale;
         glfwSetWindowUserPointer(frame_.window, this);
         glfwSetDropCallback(frame_.window, [](GLFWwindow* window, int count, const char** files) {
-            for (int i = 0; i < count; ++i) static_cast<Window*>(glfwGetWindowUserPointer(window))->drop(files[i]);
+            for (int i = 0; i < count; ++i) static_cast<Window*>(glfwGetWindowUserPointer(window))->open(files[i]);
         });
         ImGui_ImplGlfw_InitForVulkan(frame_.window, true); // after our own callbacks: it calls them too
         presenter_ = std::make_unique<Presenter>(frame_.window);
+        if (!options.reference.empty()) loadReference(options.reference);
     }
     ~Window()
     {
@@ -118,104 +92,108 @@ class Window
             latencies_.push_back(1000 * (glfwGetTime() - now));
             if (latencies_.size() > LATENCIES) latencies_.pop_front();
         }
+        memory_.size = frame_.size();
+        memory_.layout = Frame::layout();
+        remember();
     }
 
   private:
-    void drop(const std::string& file)
+    // A file that was dropped into the window, or chosen.
+    void open(const std::string& file)
     {
-        const std::string kind = std::filesystem::path(file).extension().string();
+        const std::string kind = extensionOf(file);
+        if (kind == ".json") {
+            usePreset(file);
+        } else if (kind == ".exr" || kind == ".png" || kind == ".hdr" || kind == ".jpg" || kind == ".jpeg") {
+            loadReference(file);
+        } else {
+            state_.order.scene = file;
+            state_.order.pose.reset();
+            state_.order.settings.camera.clear();
+        }
+    }
+
+    void usePreset(const std::string& nameOrFile)
+    {
         try {
-            if (kind == ".json") {
-                const std::vector<std::byte> bytes = files::read(file, MAX_PRESET_BYTES);
-                const char* text = reinterpret_cast<const char*>(bytes.data());
-                passes::Settings settings = state_.order.settings;
-                passes::apply(settings, nlohmann::ordered_json::parse(text, text + bytes.size()));
-                state_.order.settings = settings;
-            } else {
-                state_.order.scene = file;
-                state_.order.pose.reset();
-                state_.order.settings.camera.clear();
-            }
-        } catch (const nlohmann::json::exception& error) {
-            state_.message = fmt::format("\"{}\" is no preset: {}.", file, error.what());
+            applyPreset(state_.edited(), nameOrFile);
+            state_.message = fmt::format("Preset \"{}\" is set.", nameOrFile);
         } catch (const Error& error) {
             state_.message = error.what();
         }
     }
 
-    void resetView()
+    // Large files take their time: elsewhere.
+    void loadReference(const std::string& file)
     {
-        state_.order.pose.reset();
-        state_.order.moving = false;
+        loading_ = std::async(std::launch::async, [file] {
+            auto reference = std::make_shared<const Reference>(
+                Reference{image::read(file).image, std::filesystem::path(file).filename().string()});
+            glfwPostEmptyEvent();
+            return ReferencePointer(reference);
+        });
     }
 
-    // The pose to change; empty before there is a scene.
-    Pose* pose()
+    void takeReference()
     {
-        const std::shared_ptr<const SceneFacts> facts = thread_.scene();
-        if (!facts || facts->name != state_.order.scene) return nullptr;
-        if (!state_.order.pose) {
-            size_t index = 0; // the name was good enough for the render thread
-            for (size_t i = 0; i < facts->cameras.size(); ++i)
-                if (facts->cameras[i].name == state_.order.settings.camera ||
-                    std::to_string(i) == state_.order.settings.camera)
-                    index = i;
-            state_.order.pose = poseOf(facts->cameras[index], facts->origin);
+        if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        try {
+            setReference(loading_.get());
+        } catch (const Error& error) {
+            state_.message = error.what();
         }
-        return &*state_.order.pose;
     }
 
-    void moveCamera()
+    void setReference(ReferencePointer reference)
     {
-        const ImGuiIO& io = ImGui::GetIO();
-        const std::optional<Pose> before = state_.order.pose;
-        const bool dragging = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
-        if (!io.WantCaptureMouse && (dragging || io.MouseWheel != 0)) {
-            const double x = io.MouseDelta.x * RADIANS_PER_POINT, y = io.MouseDelta.y * RADIANS_PER_POINT;
-            const bool left = io.MouseDown[0], right = io.MouseDown[1], middle = io.MouseDown[2];
-            Pose* p = left || right || middle || io.MouseWheel != 0 ? pose() : nullptr;
-            if (p && left) orbit(*p, -x, y);
-            if (p && right) look(*p, -x, -y);
-            if (p && middle) pan(*p, -io.MouseDelta.x / io.DisplaySize.y, io.MouseDelta.y / io.DisplaySize.y);
-            if (p && io.MouseWheel != 0) dolly(*p, std::pow(0.9, double(io.MouseWheel)));
-        }
-        if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
-            const auto axis = [](int plus, int minus) {
-                return double(ImGui::IsKeyDown(plus)) - double(ImGui::IsKeyDown(minus));
-            };
-            const glm::dvec3 way(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
-                                 axis(GLFW_KEY_W, GLFW_KEY_S));
-            Pose* p = way != glm::dvec3(0) ? pose() : nullptr;
-            if (p) {
-                const double speed = (io.KeyShift ? 4 : 1) * glm::length(p->target - p->position);
-                fly(*p, way * speed * std::min(double(io.DeltaTime), 0.1));
-            }
-        }
-        if (state_.order.pose != before && state_.order.pose) {
-            movedAt_ = glfwGetTime();
-            state_.order.moving = true;
-        } else if (glfwGetTime() - movedAt_ > STILL_SECONDS) {
-            state_.order.moving = false;
-        }
+        state_.pictures.reference = std::move(reference);
+        if (!state_.pictures.reference) return;
+        state_.plots = true;
+        if (!state_.order.rival) state_.view.second = Source::Reference;
+    }
+
+    void freeze()
+    {
+        const ShotPointer shot = state_.pictures.shotOf(state_.view.left());
+        if (!shot || shot->order.moving) return;
+        const std::string name =
+            fmt::format("{}, {} frames", passes::toText(shot->order.settings).front().second, shot->frames);
+        setReference(std::make_shared<const Reference>(Reference{shot->picture, name}));
     }
 
     void readKeys()
     {
-        if (ImGui::GetIO().WantCaptureKeyboard) return;
+        const ImGuiIO& io = ImGui::GetIO();
+        if (io.WantCaptureKeyboard && io.WantTextInput) return;
         const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+        Requests& requests = state_.requests;
+        if (io.KeyCtrl) {
+            if (pressed(GLFW_KEY_Z)) (io.KeyShift ? requests.redo : requests.undo) = true;
+            if (pressed(GLFW_KEY_Y)) requests.redo = true;
+            return;
+        }
         if (pressed(GLFW_KEY_F1)) state_.help = !state_.help;
-        if (pressed(GLFW_KEY_F12)) state_.screenshot = true;
-        if (pressed(GLFW_KEY_HOME)) state_.resetView = true;
+        if (pressed(GLFW_KEY_F12)) requests.screenshot = true;
+        if (pressed(GLFW_KEY_HOME)) requests.resetView = true;
         if (pressed(GLFW_KEY_SPACE)) state_.order.paused = !state_.order.paused;
         if (pressed(GLFW_KEY_N)) state_.order.paused = true, ++state_.order.steps;
         if (pressed(GLFW_KEY_R)) ++state_.order.restarts;
+        if (pressed(GLFW_KEY_C)) compare(state_, !state_.order.rival);
+        if (pressed(GLFW_KEY_TAB)) state_.view.flipped = !state_.view.flipped;
+        if (pressed(GLFW_KEY_F)) requests.freeze = true;
+        if (pressed(GLFW_KEY_P)) state_.plots = !state_.plots;
+        if (pressed(GLFW_KEY_I)) state_.pixel = !state_.pixel;
+        if (pressed(GLFW_KEY_H)) state_.hidden = !state_.hidden;
+        if (pressed(GLFW_KEY_X))
+            state_.view.falseColor = FalseColor((int(state_.view.falseColor) + 1) % (int(FalseColor::NotFinite) + 1));
     }
 
     void saveShot()
     {
-        if (!shot_ || shot_->order.moving) return;
+        const ShotPointer& shot = state_.pictures.sides[state_.editing];
+        if (!shot || shot->order.moving) return;
         try {
-            line_ = takeScreenshot(*shot_);
+            line_ = takeScreenshot(*shot);
             glfwSetClipboardString(frame_.window, line_.c_str());
             state_.message = "Saved; in the clipboard: " + line_;
         } catch (const Error& error) {
@@ -223,17 +201,83 @@ class Window
         }
     }
 
-    // Where the picture fits beside the panel.
+    void answerRequests()
+    {
+        const Requests requests = std::exchange(state_.requests, {});
+        const auto restore = [&](const std::optional<SettingsPair>& pair) {
+            if (!pair) return;
+            std::tie(state_.order.settings, state_.order.rival) = *pair;
+            if (!state_.order.rival) state_.editing = A;
+        };
+        if (requests.undo) restore(undo_.undo());
+        if (requests.redo) restore(undo_.redo());
+        undo_.watch({state_.order.settings, state_.order.rival}, !ImGui::IsAnyItemActive());
+        state_.canUndo = undo_.canUndo();
+        state_.canRedo = undo_.canRedo();
+        if (!requests.file.empty()) open(requests.file);
+        if (!requests.preset.empty()) usePreset(requests.preset);
+        if (requests.freeze) freeze();
+        if (requests.dropReference) setReference(nullptr);
+        if (requests.resetView) CameraHands::reset(state_.order);
+        if (requests.screenshot) saveShot();
+    }
+
+    void remember()
+    {
+        const std::string file = memoryFile();
+        if (file.empty()) return;
+        try {
+            keep(memory_, file);
+        } catch (const Error& error) {
+            state_.message = error.what();
+        }
+    }
+
+    // Where the picture fits beside the panel, in pixels of the framebuffer.
     Rectangle pictureArea() const
     {
-        if (!shot_) return {};
+        if (!state_.pictures.sides[A]) return {};
         int width = 0, height = 0;
         glfwGetFramebufferSize(frame_.window, &width, &height);
-        const int left = int(PANEL_WIDTH * frame_.scale);
+        const int left = std::min(int(state_.panelWidth()), width);
         const passes::Settings& full = state_.order.settings;
         const double scale = std::min(double(width - left) / full.width, double(height) / full.height);
         const int w = int(full.width * scale), h = int(full.height * scale);
         return {left + (width - left - w) / 2, (height - h) / 2, w, h};
+    }
+
+    void hover(const Rectangle& area)
+    {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        const double x = (double(mouse.x) - area.x) / area.width, y = (double(mouse.y) - area.y) / area.height;
+        state_.hovered.reset();
+        if (area.width <= 0 || ImGui::GetIO().WantCaptureMouse || !(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
+        const passes::Settings& full = state_.order.settings;
+        state_.hovered = {uint32_t(x * full.width), uint32_t(y * full.height)};
+    }
+
+    void takeNews()
+    {
+        Order back;
+        if (const std::optional<std::string> failure = thread_.takeFailure(back)) {
+            state_.message = *failure;
+            back.steps = state_.order.steps;
+            back.restarts = state_.order.restarts;
+            state_.order = back;
+            if (!back.rival) state_.editing = A;
+        }
+        takeReference();
+        for (const Side side : {A, B}) state_.pictures.sides[side] = thread_.shot(side);
+        state_.activity = thread_.activity();
+        state_.ahead = thread_.ahead();
+        const std::shared_ptr<const SceneFacts> facts = thread_.scene();
+        if (facts && facts != facts_) {
+            memory_.opened(std::filesystem::exists(facts->name) ? std::filesystem::absolute(facts->name).string()
+                                                                : facts->name);
+            state_.recent = memory_.recent;
+            remember();
+        }
+        facts_ = facts;
     }
 
     void drawOnce()
@@ -241,28 +285,50 @@ class Window
         ImGui_ImplVulkan_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
-        Order back;
-        if (const std::optional<std::string> failure = thread_.takeFailure(back)) {
-            state_.message = *failure;
-            back.steps = state_.order.steps;
-            state_.order = back;
-        }
-        drawPanel(state_, shot_, thread_.activity(), frame_.scale);
-        drawHelp(state_.help);
+        takeNews();
+        const Rectangle area = pictureArea();
+        hover(area);
+        drawPanel(state_);
+        drawHelp(state_);
+        drawPixel(state_);
+        drawErrorPlot(state_, meter_);
+        const bool mouseTaken = drawOverPicture(state_, {float(area.x), float(area.y)},
+                                                {float(area.x + area.width), float(area.y + area.height)});
         readKeys();
-        moveCamera();
-        if (std::exchange(state_.resetView, false)) resetView();
+        hands_.move(state_.order, facts_.get(), mouseTaken);
+        if (hands_.bookmarks(state_, facts_.get(), memory_)) remember();
+        answerRequests();
+        state_.order.inspect = wantsReservoirs(state_);
         thread_.order(state_.order);
+        meter_.offer(state_.pictures);
 
-        const std::shared_ptr<const Shot> latest = thread_.shot();
-        if (latest && (latest != shot_ || state_.tone != shownTone_))
-            presenter_->setPicture(toScreen(latest->picture, shownTone_ = state_.tone));
-        const bool news = latest != shot_;
-        shot_ = latest;
-        if (std::exchange(state_.screenshot, false)) saveShot();
+        const bool news = state_.pictures != shown_;
         ImGui::Render();
-        presenter_->draw(ImGui::GetDrawData(), pictureArea());
+        show(news, area);
         if (!options_.report.empty() && (news || glfwGetTime() - reportedAt_ > IDLE_SECONDS)) report();
+    }
+
+    // A screen's device can be lost like any other: then once more from the start.
+    void show(bool news, const Rectangle& area)
+    {
+        const bool stale = news || state_.view != shownView_ || state_.tone != shownTone_ || freshPresenter_;
+        try {
+            if (stale)
+                if (const ScreenPicture screen = compose(state_.pictures, state_.view, state_.tone); screen.width > 0)
+                    presenter_->setPicture(screen);
+            presenter_->draw(ImGui::GetDrawData(), area);
+            freshPresenter_ = false;
+        } catch (const Error& error) {
+            if (glfwGetTime() - lostAt_ < LOSS_SECONDS) throw;
+            lostAt_ = glfwGetTime();
+            state_.message = fmt::format("{} It was opened anew.", error.what());
+            presenter_.reset();
+            presenter_ = std::make_unique<Presenter>(frame_.window);
+            freshPresenter_ = true;
+        }
+        shown_ = state_.pictures;
+        shownView_ = state_.view;
+        shownTone_ = state_.tone;
     }
 
     void report()
@@ -273,34 +339,30 @@ class Window
         const auto percentile = [&](double p) {
             return sorted.empty() ? 0 : sorted[size_t(p * double(sorted.size() - 1))];
         };
-        nlohmann::ordered_json json = {{"activity", thread_.activity()},
-                                       {"message", state_.message},
-                                       {"line", line_},
-                                       {"presents_on", presenter_->deviceName()},
-                                       {"answer_ms", {{"p50", percentile(0.5)}, {"p99", percentile(0.99)}}},
-                                       {"places", state_.places}};
-        if (shot_) {
-            json["scene"] = shot_->order.scene;
-            json["settings"] = passes::toJson(shot_->order.settings);
-            json["frames"] = shot_->frames;
-            json["moving"] = shot_->order.moving;
-            json["camera_moved"] = shot_->order.pose.has_value();
-            json["paused"] = shot_->order.paused;
-            json["variant"] = shot_->stats.variant;
-            json["nonfinite"] = shot_->stats.nonFinite;
-        }
+        nlohmann::ordered_json json = reportOf(state_, meter_);
+        json["line"] = line_;
+        json["presents_on"] = presenter_->deviceName();
+        json["answer_ms"] = {{"p50", percentile(0.5)}, {"p99", percentile(0.99)}};
         writeText(options_.report, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
 
     WindowOptions options_;
+    WindowMemory memory_;
     Frame frame_;
     std::unique_ptr<Presenter> presenter_;
-    PanelState state_;
+    WindowState state_;
+    CameraHands hands_;
+    UndoList<SettingsPair> undo_;
+    Pictures shown_;
+    View shownView_;
     Tone shownTone_;
-    std::shared_ptr<const Shot> shot_;
+    bool freshPresenter_ = false;
     std::string line_;
-    double movedAt_ = -1, reportedAt_ = 0;
+    std::shared_ptr<const SceneFacts> facts_;
+    std::future<ReferencePointer> loading_;
+    double reportedAt_ = 0, lostAt_ = -LOSS_SECONDS;
     std::deque<double> latencies_;
+    ErrorMeter meter_;
     RenderThread thread_; // last: ends first
 };
 

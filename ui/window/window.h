@@ -4,15 +4,16 @@
 #include <string>
 
 #include "ui/cli/device_options.h"
-#include "ui/window/render_thread.h"
+#include "ui/window/order.h"
 
 namespace ui
 {
 
 struct WindowOptions {
     DeviceOptions device;
-    Order order;        // to begin with
-    std::string report; // file that always says what the window shows, for scripts; empty: none
+    Order order;           // to begin with
+    std::string reference; // picture to measure errors against; empty: none
+    std::string report;    // file that always says what the window shows, for scripts; empty: none
 };
 
 // Until the window is closed, or SIGTERM or SIGINT comes. Throws Error: no window can be shown.

@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""The window under load, in a virtual display: how soon it answers, how soon a toggle shows, and whether it lasts.
+
+  window_bench.py TRICHROME latency [SCENE]     from mouse motion to changed pixels on the screen, while frames take long
+  window_bench.py TRICHROME toggle [SCENE]      from a click on a method to its first frame: cold, and again warm
+  window_bench.py TRICHROME soak [SCENE]        random changes of settings for --minutes (20), under Vulkan validation
+
+Needs Xvfb and xdotool. Prints one JSON object. Exit code 1: the soak found growth of memory, messages, values that are not
+finite, or an end; 77: a tool is missing.
+"""
+
+import argparse
+import ctypes
+import json
+import mmap
+import os
+import pathlib
+import random
+import shutil
+import signal
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+LAYER = "VK_LAYER_KHRONOS_validation"
+GROWTH = 0.01  # of resident memory, at most
+
+
+class Display:
+    """Xvfb, its screen as memory, and a mouse."""
+
+    def __init__(self, folder):
+        self.name = f":{500 + os.getpid() % 20000}"
+        command = ["Xvfb", self.name, "-screen", "0", "1280x720x24", "-nolisten", "tcp", "-fbdir", str(folder)]
+        self.server = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+        for _ in range(100):
+            if pathlib.Path(f"/tmp/.X11-unix/X{self.name[1:]}").exists():
+                break
+            time.sleep(0.05)
+        os.environ["DISPLAY"] = self.name
+        self.x11 = ctypes.CDLL("libX11.so.6")
+        self.xtst = ctypes.CDLL("libXtst.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.connection = ctypes.c_void_p(self.x11.XOpenDisplay(None))
+        with open(folder / "Xvfb_screen0", "rb") as file:
+            self.memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
+        header = struct.unpack(">25I", self.memory[:100])
+        self.start, self.line = header[0] + 12 * header[19], header[12]
+
+    def move(self, x, y):
+        self.xtst.XTestFakeMotionEvent(self.connection, -1, int(x), int(y), 0)
+        self.x11.XFlush(self.connection)
+
+    def click(self, x, y):
+        self.move(x, y)
+        for down in (1, 0):
+            time.sleep(0.15)
+            self.xtst.XTestFakeButtonEvent(self.connection, 1, down, 0)
+            self.x11.XFlush(self.connection)
+
+    def pixel(self, x, y):
+        at = self.start + int(y) * self.line + 4 * int(x)
+        return self.memory[at : at + 3]
+
+
+class Window:
+    def __init__(self, program, scene, folder, options=(), environment=()):
+        self.report_file, self.log_file = folder / "report.json", folder / "log"
+        self.report_file.unlink(missing_ok=True)
+        command = [program, "view", scene, "--report", str(self.report_file), *options]
+        with open(self.log_file, "w", encoding="utf-8") as log:
+            self.process = subprocess.Popen(
+                command, cwd=folder, stdout=log, stderr=log, env={**os.environ, "XDG_CONFIG_HOME": str(folder), **dict(environment)}
+            )
+
+    def report(self):
+        try:
+            return json.loads(self.report_file.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return {}
+
+    def wait(self, condition, seconds=600):
+        """Seconds until the report fits."""
+        start = time.monotonic()
+        while time.monotonic() - start < seconds:
+            report = self.report()
+            if report.get("frames", 0) > 0 and condition(report):
+                return time.monotonic() - start
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.005)
+        sys.exit(f"window_bench: it never came; the last report: {json.dumps(self.report())[:2000]}\n{self.log_file.read_text()}")
+
+    def resident(self):
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text(encoding="utf-8")
+        return int(next(line for line in status.splitlines() if line.startswith("VmRSS")).split()[1]) * 1024
+
+    def close(self):
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=120)
+
+
+def percentile(values, p):
+    return sorted(values)[min(int(p * len(values)), len(values) - 1)]
+
+
+def latency(arguments, display, folder):
+    window = Window(arguments.program, arguments.scene, folder, ["--size", arguments.size, "--method", "rgb-restir"])
+    window.wait(lambda report: report["frames"] > 1 and not report["ahead"])
+    x, y = window.report()["places"]["screenshot"]
+    corner = (x - 15, y - 8)  # of the button, beside its word
+    times = []
+    for i in range(arguments.samples):
+        display.move(900, 600)
+        time.sleep(0.25 + 0.1 * random.random())
+        before = display.pixel(*corner)
+        start = time.monotonic()
+        display.move(x, y)
+        while display.pixel(*corner) == before and time.monotonic() - start < 5:
+            time.sleep(0.0005)
+        times.append(1000 * (time.monotonic() - start))
+    report = window.report()
+    result = {
+        "scene": arguments.scene, "size": arguments.size, "samples": len(times),
+        "frame_ms": 1000 * report["seconds"] / report["frames"],
+        "p50_ms": percentile(times, 0.5), "p99_ms": percentile(times, 0.99), "max_ms": max(times),
+    }  # fmt: skip
+    window.close()
+    return result
+
+
+def toggle(arguments, display, folder):
+    result = {"scene": arguments.scene, "size": arguments.size}
+    cache = {"MESA_SHADER_CACHE_DIR": str(folder / "mesa"), "XDG_CACHE_HOME": str(folder / "cache")}
+    window = Window(arguments.program, arguments.scene, folder, ["--size", arguments.size], cache)
+    window.wait(lambda report: report["frames"] > 0)
+    for name in ("cold", "ahead", "again"):
+        if name == "ahead":  # a new start: what the last one compiled is in the driver's cache, and compiled ahead anyway
+            window.close()
+            window = Window(arguments.program, arguments.scene, folder, ["--size", arguments.size], cache)
+            window.wait(lambda report: not report["ahead"] and not report["activity"] and report["frames"] > 2)
+            time.sleep(1)
+            window.wait(lambda report: not report["ahead"])
+        for method, index in (("rgb-restir", 2), ("pt", 0)):
+            before = window.report()["frames"]
+            display.click(*window.report()["places"][f"method.{index}"])
+            start = time.monotonic()
+            went_on = [False]
+
+            def shown(report, method=method):
+                went_on[0] |= report["settings"]["method"] != method and report["frames"] > before
+                return report["settings"]["method"] == method
+
+            window.wait(shown)
+            result[f"{name}_{method}_s"] = time.monotonic() - start
+            if name == "cold":
+                result[f"{name}_{method}_picture_went_on"] = went_on[0]
+    window.close()
+    return result
+
+
+def soak(arguments, display, folder):
+    layers = pathlib.Path(f"/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json").exists()
+    environment = {"VK_INSTANCE_LAYERS": LAYER, "VK_LAYER_ENABLES": "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"}
+    window = Window(
+        arguments.program, arguments.scene, folder, ["--size", arguments.size, "--max-bounces", "2"], environment if layers else {}
+    )
+    window.wait(lambda report: report["frames"] > 0)
+    widgets = ["method.0", "method.1", "method.2", "method.3", "shift.0", "shift.1", "shift.2", "temporal", "compare", "freeze",
+               "pixel-filter.0", "pixel-filter.1", "pause", "restart", "step", "undo", "redo", "reset-view", "layout.0",
+               "layout.1", "layout.2", "pixel", "first.0", "second.1"]  # fmt: skip
+    chance = random.Random(arguments.seed)
+    start, samples, nonfinite, clicks = time.monotonic(), [], 0, 0
+    while time.monotonic() - start < 60 * arguments.minutes:
+        report = window.report()
+        if window.process.poll() is not None:
+            break
+        place = report.get("places", {}).get(chance.choice(widgets))
+        if place and place[1] < 720:
+            display.click(*place)
+            clicks += 1
+        if chance.random() < 0.1:
+            display.move(chance.uniform(420, 1260), chance.uniform(120, 600))
+        time.sleep(0.3)
+        nonfinite += sum(report.get("nonfinite", {}).values())
+        samples.append((time.monotonic() - start, window.resident(), report.get("memory_bytes", 0)))
+    ended = window.process.poll() is not None
+    code = window.process.poll() if ended else window.close()
+    log = window.log_file.read_text(encoding="utf-8")
+    quarter = max(len(samples) // 4, 1)
+    peak = [max(s[1] for s in samples[i * quarter : (i + 1) * quarter] or samples[-1:]) for i in range(4)]
+    result = {
+        "scene": arguments.scene, "minutes": arguments.minutes, "clicks": clicks, "validation": layers, "messages": log.count("\n"),
+        "nonfinite": nonfinite, "ended_early": ended, "exit_code": code,
+        "resident_mb_by_quarter": [round(p / 1e6, 1) for p in peak],
+        "growth_last_over_second_quarter": peak[3] / peak[1] - 1,
+        "device_mb_max": max(s[2] for s in samples) / 1e6,
+        "resident_median_mb": statistics.median(s[1] for s in samples) / 1e6,
+    }  # fmt: skip
+    failed = ended or code != 0 or nonfinite or log or result["growth_last_over_second_quarter"] > GROWTH
+    if log:
+        result["log"] = log[:2000]
+    return result, failed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("what", choices=["latency", "toggle", "soak"])
+    parser.add_argument("scene", nargs="?", default="cornell")
+    parser.add_argument("--size", default="128x72")
+    parser.add_argument("--samples", type=int, default=200)
+    parser.add_argument("--minutes", type=float, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    arguments.program = os.path.abspath(arguments.program)
+    if os.path.exists(arguments.scene):
+        arguments.scene = os.path.abspath(arguments.scene)
+    if not shutil.which("Xvfb") or not shutil.which("xdotool"):
+        print("SKIPPED, NOT MEASURED: Xvfb or xdotool is not installed")
+        sys.exit(77)
+    failed = False
+    with tempfile.TemporaryDirectory(prefix="trichrome-bench-") as name:
+        display = Display(pathlib.Path(name))
+        try:
+            result = {"latency": latency, "toggle": toggle, "soak": soak}[arguments.what](arguments, display, pathlib.Path(name))
+            if arguments.what == "soak":
+                result, failed = result
+        finally:
+            display.server.terminate()
+            display.server.wait()
+    print(json.dumps(result, indent=2))
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

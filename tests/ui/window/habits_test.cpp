@@ -1,0 +1,85 @@
+// What people expect of any window: presets, undo, dropped files, bookmarks, and that it remembers.
+
+#include "tests/support/program.h"
+#include "tests/ui/window/window_fixture.h"
+#include "tests/ui/window/x_drop.h"
+
+namespace
+{
+
+class WindowHabits : public WindowTest
+{
+};
+
+} // namespace
+
+TEST_F(WindowHabits, PresetsAndDropsSetWhatTheyNameAndUndoTakesItBack)
+{
+    writeFile(folder_ + "/mine.json", R"({"spatial": 1, "max-bounces": 1})");
+    writeFile(folder_ + "/wrong.json", R"({"spam": 1})");
+    view();
+    ASSERT_TRUE(comes(runs("method", "pt")));
+    ASSERT_TRUE(
+        until([](const Json& json) { return json["places"].contains("preset.paper"); }, [&] { click("preset"); }));
+    ASSERT_TRUE(until(asks("max-confidence", 32768), [&] { click("preset.paper"); }));
+    ASSERT_TRUE(comes(runs("max-confidence", 32768)));
+    EXPECT_EQ(report()["settings"]["method"], "rgb-restir");
+    EXPECT_EQ(report()["settings"]["spatial"], 0);
+    EXPECT_EQ(report()["settings"]["max-bounces"], 2); // it does not name it
+    ASSERT_TRUE(dropFile("Trichrome", folder_ + "/mine.json"));
+    ASSERT_TRUE(comes(runs("spatial", 1)));
+    EXPECT_EQ(report()["settings"]["max-bounces"], 1);
+    ASSERT_TRUE(dropFile("Trichrome", folder_ + "/wrong.json"));
+    ASSERT_TRUE(
+        comes([](const Json& json) { return json["message"].get<std::string>().find("spam") != std::string::npos; }));
+    EXPECT_EQ(report()["settings"]["spatial"], 1);
+    ASSERT_TRUE(until(asks("spatial", 0), [] { key("ctrl+z"); }));
+    ASSERT_TRUE(until(asks("method", "pt"), [] { key("ctrl+z"); }));
+    ASSERT_TRUE(comes(runs("method", "pt")));
+    ASSERT_TRUE(until(asks("method", "rgb-restir"), [] { key("ctrl+y"); }));
+    ASSERT_TRUE(comes(runs("method", "rgb-restir")));
+    EXPECT_EQ(report()["settings"]["max-confidence"], 32768);
+    EXPECT_EQ(close(), 0);
+}
+
+TEST_F(WindowHabits, ASceneCanBeDroppedABadOneChangesNothingAndTheRestIsRemembered)
+{
+    writeFile(folder_ + "/broken.gltf", "{\"asset\": ");
+    view();
+    ASSERT_TRUE(comes(runs("method", "pt")));
+    ASSERT_TRUE(dragUntilMoved());
+    ASSERT_TRUE(
+        until([](const Json& json) { return json["message"] == "Bookmark 1 is here."; }, [] { key("ctrl+1"); }));
+    ASSERT_TRUE(until(asks("moved", false), [] { key("Home"); }));
+    ASSERT_TRUE(until(asks("moved", true), [] { key("1"); }));
+
+    ASSERT_TRUE(dropFile("Trichrome", folder_ + "/broken.gltf"));
+    ASSERT_TRUE(comes([](const Json& json) {
+        return json["message"].get<std::string>().find("broken.gltf") != std::string::npos && json["frames"] > 0;
+    }));
+    const int frames = report()["frames"];
+    EXPECT_TRUE(comes([&](const Json& json) { return json["scene"] == "cornell" && json["frames"] > frames; }));
+    ASSERT_EQ(shell("xdotool search --name Trichrome windowsize 1000 600"), 0);
+    ASSERT_EQ(shell("xdotool search --name Trichrome windowunmap sleep 0.5 windowmap"), 0);
+    EXPECT_TRUE(comes([&, later = report()["frames"].get<int>()](const Json& json) { return json["frames"] > later; }));
+    ASSERT_EQ(close(), 0);
+
+    view({}, "furnace");
+    ASSERT_TRUE(comes([](const Json& json) { return json["scene"] == "furnace"; }));
+    EXPECT_EQ(report()["recent"], Json({"furnace", "cornell"}));
+    const Json kept = readJson(folder_ + "/trichrome/window.json");
+    EXPECT_EQ(kept["size"], Json({1000, 600}));
+    EXPECT_TRUE(kept["bookmarks"]["cornell"][0].is_object());
+    ASSERT_TRUE(until([](const Json& json) { return json["places"].contains("recent.1"); }, [&] { click("open"); }));
+    EXPECT_TRUE(until([](const Json& json) { return json["scene"] == "cornell"; }, [&] { click("recent.1"); }));
+    EXPECT_EQ(close(), 0);
+}
+
+TEST_F(WindowHabits, ASceneThatFailsAtFirstLeavesTheWindowOpen)
+{
+    view({}, "missing.glb");
+    EXPECT_TRUE(comes([](const Json& json) {
+        return json.contains("message") && json["message"].get<std::string>().find("missing.glb") != std::string::npos;
+    }));
+    EXPECT_EQ(close(), 0);
+}

@@ -1,0 +1,23 @@
+#pragma once
+// How mouse and keyboard move the camera.
+
+#include "ui/window/window_memory.h"
+#include "ui/window/window_state.h"
+
+namespace ui
+{
+
+class CameraHands
+{
+  public:
+    // `facts` of the scene on the screen; null: there is none yet. `mouseTaken`: the mouse does something else.
+    void move(Order& order, const SceneFacts* facts, bool mouseTaken);
+    static void reset(Order& order);
+    // Keys 1 to 9; true when a bookmark was set.
+    bool bookmarks(WindowState& state, const SceneFacts* facts, WindowMemory& memory);
+
+  private:
+    double movedAt_ = -1;
+};
+
+} // namespace ui

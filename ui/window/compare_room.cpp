@@ -1,0 +1,160 @@
+#include "ui/window/compare_room.h"
+
+#include "ui/window/false_color.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ui
+{
+
+namespace
+{
+
+constexpr float GRIP = 8; // points to each side of the line
+
+std::string nameOf(const WindowState& state, Source source)
+{
+    if (source == Source::Reference) return "reference: " + state.pictures.reference->name;
+    const ShotPointer shot = state.pictures.shotOf(source);
+    const passes::Settings& settings = shot->order.settings;
+    std::string text = fmt::format("{}: {}", source == Source::A ? "A" : "B", passes::toText(settings).front().second);
+    if (settings.method != passes::Method::Pt)
+        text += fmt::format(", {}, M_c {}", passes::toText(settings)[1].second, settings.maxConfidence);
+    return text + fmt::format("\n{} frames, {:.1f} s", shot->frames, shot->seconds);
+}
+
+ImVec4 colorOf(Source source)
+{
+    return source == Source::Reference ? ImVec4(0.9f, 0.9f, 0.9f, 1) : colors::SIDES[source == Source::A ? A : B];
+}
+
+void label(const WindowState& state, Source source, ImVec2 at, bool fromRight)
+{
+    const std::string text = nameOf(state, source);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 from = {fromRight ? at.x - size.x : at.x, at.y}, pad = {4, 2};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({from.x - pad.x, from.y - pad.y}, {from.x + size.x + pad.x, from.y + size.y + pad.y},
+                       IM_COL32(0, 0, 0, 170), 3);
+    list.AddText(from, ImGui::ColorConvertFloat4ToU32(colorOf(source)), text.c_str());
+}
+
+bool there(const WindowState& state, Source source)
+{
+    return state.pictures.of(source) != nullptr;
+}
+
+} // namespace
+
+void compare(WindowState& state, bool on)
+{
+    if (on == state.order.rival.has_value()) return;
+    if (on) {
+        state.order.rival = state.order.settings;
+        state.order.rival->method = state.order.settings.method == passes::Method::RgbRestir
+                                        ? passes::Method::RestirPt
+                                        : passes::Method::RgbRestir;
+        state.editing = B;
+        state.view.first = Source::A;
+        state.view.second = Source::B;
+        state.view.layout = Layout::Split;
+    } else {
+        state.order.rival.reset();
+        state.editing = A;
+        if (state.view.second == Source::B) state.view.layout = Layout::One;
+    }
+    state.view.flipped = false;
+}
+
+void drawCompareRoom(WindowState& state)
+{
+    bool two = state.order.rival.has_value();
+    if (ImGui::Checkbox("compare with B (C)", &two)) compare(state, two);
+    remember(state.places, "compare");
+    explain("A second set of settings in the same scene. Both get the same time.");
+    if (state.order.rival) {
+        ImGui::SameLine();
+        int editing = state.editing;
+        ImGui::TextColored(colors::GRAY, "settings of");
+        ImGui::SameLine();
+        if (choose(state.places, "edit", editing, {"A", "B"}, "Whose settings the panel shows and changes."))
+            state.editing = Side(editing);
+    }
+    const bool reference = state.pictures.reference != nullptr;
+    if (button(state.places, "Freeze as reference", "freeze",
+               "Keeps the picture that is shown (left of the line) as it is now, to measure against (F). An EXR or PNG "
+               "dropped into the window becomes the reference, too."))
+        state.requests.freeze = true;
+    if (reference) {
+        ImGui::SameLine();
+        state.requests.dropReference |= button(state.places, "Drop it", "drop-reference", "No reference any more.");
+        ImGui::SameLine();
+        ImGui::Checkbox("error (P)", &state.plots);
+        remember(state.places, "plots");
+        explain("Error against the reference over time, for A and B.");
+    }
+    if (!two && !reference) return;
+    View& view = state.view;
+    const auto pick = [&](const char* name, Source& source, const char* doc) {
+        int index = int(source);
+        if (choose(state.places, name, index, {"A", "B", "reference"}, doc))
+            source = Source(index), view.flipped = false;
+    };
+    pick("first", view.first, "The picture that is shown; left of the line in a split.");
+    ImGui::SameLine();
+    ImGui::TextColored(colors::GRAY, "shown,");
+    pick("second", view.second, "What it is compared with; right of the line in a split.");
+    ImGui::SameLine();
+    ImGui::TextColored(colors::GRAY, "beside it");
+    int layout = int(view.layout);
+    if (choose(state.places, "layout", layout, {"one (Tab flips)", "split", "difference"},
+               "One: Tab flips between the two. Split: drag the line. Difference: its absolute value per channel; "
+               "exposure "
+               "makes it brighter."))
+        view.layout = Layout(layout);
+}
+
+bool drawOverPicture(WindowState& state, ImVec2 low, ImVec2 high)
+{
+    View& view = state.view;
+    const bool left = there(state, view.left()), right = there(state, view.right());
+    const float top = low.y + 6;
+    if (const ShotPointer shot = state.pictures.shotOf(view.left()); shot && view.falseColor != FalseColor::Off) {
+        const std::string legend = legendOf(*shot, view.falseColor, view.reservoir);
+        const ImVec2 at = {low.x + 8, high.y - ImGui::GetTextLineHeight() - 8};
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        const ImVec2 size = ImGui::CalcTextSize(legend.c_str());
+        list.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, IM_COL32(0, 0, 0, 190), 3);
+        list.AddText(at, IM_COL32(255, 255, 255, 255), legend.c_str());
+    }
+    if (!left || !right) return false; // only one picture: nothing to tell apart
+    if (view.layout == Layout::One) {
+        label(state, view.left(), {low.x + 8, top}, false);
+        return false;
+    }
+    if (view.layout == Layout::Difference) {
+        label(state, view.left(), {low.x + 8, top}, false);
+        label(state, view.right(), {high.x - 8, top}, true);
+        return false;
+    }
+    static bool dragging = false;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float x = low.x + view.wipe * (high.x - low.x);
+    state.places["wipe"] = {int(x), int((low.y + high.y) / 2)};
+    const bool near = std::abs(io.MousePos.x - x) < GRIP * state.scale && io.MousePos.y >= low.y &&
+                      io.MousePos.y < high.y && !io.WantCaptureMouse;
+    if (!io.MouseDown[0]) dragging = false;
+    if (near && ImGui::IsMouseClicked(0)) dragging = true;
+    if (dragging) view.wipe = std::clamp((io.MousePos.x - low.x) / (high.x - low.x), 0.0f, 1.0f);
+    if (near || dragging) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    const float line = low.x + view.wipe * (high.x - low.x);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddLine({line, low.y}, {line, high.y},
+                 near || dragging ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 255, 255, 150), state.scale);
+    label(state, view.left(), {line - 12, top}, true);
+    label(state, view.right(), {line + 12, top}, false);
+    return near || dragging;
+}
+
+} // namespace ui

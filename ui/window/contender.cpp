@@ -1,0 +1,143 @@
+#include "ui/window/contender.h"
+
+#include "passes/camera_choice.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace ui
+{
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t MOVING_DIVISOR = 2;       // of width and height while the camera moves
+constexpr double PUBLISH_SECONDS = 1.0 / 60; // no more pictures than a screen shows
+
+double secondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Settings that only say which picture is read, or when `render` stops.
+passes::Settings withoutReading(passes::Settings settings)
+{
+    settings.average = true;
+    settings.frames = 1;
+    settings.seconds = 0;
+    return settings;
+}
+
+uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
+{
+    uint64_t sum = 0;
+    for (const auto& [name, count] : counts) sum += count;
+    return sum;
+}
+
+} // namespace
+
+passes::Settings settingsOf(const Order& order, Side side)
+{
+    const passes::Settings& world = order.settings;
+    passes::Settings settings = side == B && order.rival ? *order.rival : world;
+    settings.width = world.width;
+    settings.height = world.height;
+    settings.camera = world.camera;
+    settings.environment = world.environment;
+    settings.environmentScale = world.environmentScale;
+    if (order.moving) {
+        settings.width = std::max(settings.width / MOVING_DIVISOR, 1u);
+        settings.height = std::max(settings.height / MOVING_DIVISOR, 1u);
+    }
+    return settings;
+}
+
+Contender::Contender(std::unique_ptr<passes::Renderer> renderer, const scene::Scene& scene, const Order& order,
+                     Side side)
+    : renderer_(std::move(renderer)), side_(side), followed_(order)
+{
+    place(order, scene);
+    startOver();
+}
+
+void Contender::follow(const Order& order, const scene::Scene& scene)
+{
+    const passes::Settings next = settingsOf(order, side_), now = renderer_->settings();
+    const bool cameraChanged = order.pose != followed_.pose || next.camera != now.camera;
+    const bool settingsChanged = withoutReading(next) != withoutReading(now);
+    if (next != now) {
+        inspector_.reset(); // its stage is over buffers that apply() may replace
+        try {
+            renderer_->apply(next);
+        } catch (...) {
+            renderer_->apply(now);
+            throw;
+        }
+    }
+    if (cameraChanged || next.width != now.width || next.height != now.height) place(order, scene);
+    const bool stands = !order.moving && (cameraChanged || followed_.moving);
+    if (settingsChanged || stands || order.restarts != followed_.restarts) startOver();
+    followed_ = order;
+}
+
+void Contender::recompile()
+{
+    inspector_.reset();
+    renderer_->recompile();
+    startOver();
+}
+
+void Contender::startOver()
+{
+    static uint64_t runs = 0; // of all contenders, which live in one thread
+    run_ = ++runs;
+    renderer_->reset();
+    raysBefore_ = 0;
+    seconds_ = 0;
+}
+
+void Contender::place(const Order& order, const scene::Scene& scene)
+{
+    const scene::Camera& base = scene.cameras[passes::chooseCamera(scene, order.settings.camera)];
+    renderer_->setCamera(order.pose ? cameraOf(*order.pose, base, scene.origin) : base);
+}
+
+void Contender::render(bool once)
+{
+    const auto start = Clock::now();
+    const uint64_t before = frames();
+    do renderer_->renderFrame(), renderer_->wait();
+    while (!once && secondsSince(start) < PUBLISH_SECONDS);
+    const double seconds = secondsSince(start);
+    seconds_ += seconds;
+    const uint64_t rays = sumOf(renderer_->stats().rays);
+    frameMilliseconds_ = 1000 * seconds / double(frames() - before);
+    raysPerSecond_ = double(rays - std::min(rays, raysBefore_)) / seconds;
+    raysBefore_ = rays;
+}
+
+ShotPointer Contender::shot(const Order& order)
+{
+    auto shot = std::make_shared<Shot>();
+    shot->single = order.moving || !renderer_->settings().average;
+    shot->picture = shot->single ? renderer_->readFrame() : renderer_->readMean();
+    shot->order = order;
+    shot->order.settings = renderer_->settings();
+    shot->run = run_;
+    shot->frames = frames();
+    shot->seconds = seconds_;
+    shot->stats = renderer_->stats();
+    shot->adapter = renderer_->device().adapter();
+    shot->frameMilliseconds = frameMilliseconds_;
+    shot->raysPerSecond = raysPerSecond_;
+    const bool inspects = order.inspect && renderer_->settings().method != passes::Method::Pt;
+    if (inspects && !inspector_) inspector_ = std::make_unique<passes::Inspector>(*renderer_);
+    if (!inspects) inspector_.reset();
+    if (inspector_) shot->reservoirs = inspector_->read();
+    return shot;
+}
+
+} // namespace ui

@@ -1,0 +1,43 @@
+#pragma once
+// One of the settings that are compared: its renderer, and its picture so far.
+
+#include <memory>
+
+#include "passes/inspector.h"
+#include "ui/window/order.h"
+
+namespace ui
+{
+
+class Contender
+{
+  public:
+    Contender(std::unique_ptr<passes::Renderer> renderer, const scene::Scene& scene, const Order& order, Side side);
+
+    // Follows the order from the next frame on. Anything that changes the estimate starts over: a mean over two
+    // settings would be the picture of neither, and no command line could repeat it. While the camera moves, reuse goes
+    // on from frame to frame. Throws Error, and goes on as before: such as a picture too large for the device.
+    void follow(const Order& order, const scene::Scene& scene);
+    void recompile(); // throws Error: a shader that does not compile
+
+    // Renders for a sixtieth of a second; `once`: one frame. Throws Error: the device is lost.
+    void render(bool once);
+    ShotPointer shot(const Order& order); // of the film as it is
+
+    passes::Renderer& renderer() { return *renderer_; }
+    double seconds() const { return seconds_; } // of rendering since it last started over
+    uint64_t frames() const { return renderer_->frameCount(); }
+
+  private:
+    void place(const Order& order, const scene::Scene& scene);
+    void startOver();
+
+    std::unique_ptr<passes::Renderer> renderer_;
+    std::unique_ptr<passes::Inspector> inspector_;
+    Side side_;
+    Order followed_;
+    uint64_t run_ = 0, raysBefore_ = 0;
+    double seconds_ = 0, frameMilliseconds_ = 0, raysPerSecond_ = 0;
+};
+
+} // namespace ui

@@ -1,0 +1,100 @@
+#include "ui/window/error_meter.h"
+
+#include "engine/base/error.h"
+
+#include <unistd.h>
+
+namespace ui
+{
+
+namespace
+{
+
+constexpr double APART = 1.06; // times of neighboring points, as a quotient
+constexpr int BACKGROUND = 5;  // nice: after the window's own thread
+
+} // namespace
+
+ErrorMeter::ErrorMeter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+ErrorMeter::~ErrorMeter()
+{
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void ErrorMeter::offer(const Pictures& pictures)
+{
+    {
+        const std::lock_guard lock(mutex_);
+        offered_ = pictures;
+        for (const Side side : {A, B}) {
+            Track& track = tracks_[side];
+            const ShotPointer& shot = pictures.sides[side];
+            const bool same = shot && shot->run == track.run && track.reference == pictures.reference;
+            if (!same) track = {.run = shot ? shot->run : 0, .reference = pictures.reference};
+        }
+        if (!pictures.reference) complaint_.clear();
+    }
+    changed_.notify_all();
+}
+
+ErrorCurve ErrorMeter::curve(Side side) const
+{
+    const std::lock_guard lock(mutex_);
+    return tracks_[side].curve;
+}
+
+std::string ErrorMeter::complaint() const
+{
+    const std::lock_guard lock(mutex_);
+    return complaint_;
+}
+
+bool ErrorMeter::due(Side side) const
+{
+    const ShotPointer& shot = offered_.sides[side];
+    if (!shot || !offered_.reference || shot->order.moving || shot == tracks_[side].tried) return false;
+    const ErrorCurve& curve = tracks_[side].curve;
+    return curve.empty() || shot->seconds >= APART * curve.back().seconds;
+}
+
+void ErrorMeter::run()
+{
+    [[maybe_unused]] const int niceness = nice(BACKGROUND); // of this thread, on Linux
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || due(A) || due(B); });
+        if (stop_) return;
+        for (const Side side : {A, B})
+            if (due(side)) measure(lock, side);
+    }
+}
+
+void ErrorMeter::measure(std::unique_lock<std::mutex>& lock, Side side)
+{
+    const ShotPointer shot = offered_.sides[side];
+    const ReferencePointer reference = offered_.reference;
+    ErrorPoint point{.seconds = shot->seconds, .frames = shot->frames};
+    std::string complaint;
+    lock.unlock();
+    try {
+        point.metrics = image::measure(reference->picture, shot->picture);
+    } catch (const Error& error) {
+        complaint = error.what();
+    }
+    lock.lock();
+    complaint_ = complaint;
+    Track& track = tracks_[side];
+    if (track.run == shot->run && track.reference == reference && complaint.empty()) track.curve.push_back(point);
+    track.tried = shot;
+    lock.unlock();
+    wake_();
+    lock.lock();
+}
+
+} // namespace ui

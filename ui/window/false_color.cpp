@@ -1,0 +1,167 @@
+#include "ui/window/false_color.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace ui
+{
+
+namespace
+{
+
+using Color = glm::vec3; // sRGB-encoded, 0 to 1
+
+// Black, violet, orange, pale yellow: brightness rises all the way, so that it can be read without color, too.
+Color ramp(float x)
+{
+    constexpr Color STOPS[] = {{0.02f, 0.02f, 0.08f},
+                               {0.32f, 0.10f, 0.45f},
+                               {0.72f, 0.22f, 0.38f},
+                               {0.96f, 0.52f, 0.20f},
+                               {0.99f, 0.96f, 0.72f}};
+    constexpr int LAST = int(std::size(STOPS)) - 1;
+    const float at = std::clamp(x, 0.0f, 1.0f) * LAST;
+    const int stop = std::min(int(at), LAST - 1);
+    return glm::mix(STOPS[stop], STOPS[stop + 1], at - float(stop));
+}
+
+constexpr Color NONE = {0.25f, 0.25f, 0.27f}; // nothing to show there
+constexpr Color ALARM = {1, 0, 1};
+
+struct Cell { // the reservoirs of one pixel
+    const Shot& shot;
+    size_t pixel;
+    const shared::Inspection& operator[](int c) const
+    {
+        return shot.reservoirs[size_t(c) * shot.picture.pixels.size() + pixel];
+    }
+};
+
+// The number that a view shows of a pixel; empty: there is none.
+std::optional<float> valueOf(const Cell& cell, FalseColor view, int c)
+{
+    const shared::Inspection& seen = cell[c];
+    const bool holds = seen.weightSum > 0;
+    switch (view) {
+    case FalseColor::Confidence: return seen.confidence > 0 ? std::optional(float(seen.confidence)) : std::nullopt;
+    case FalseColor::Weight: return holds ? std::optional(std::log2(seen.weight)) : std::nullopt;
+    case FalseColor::Length: return holds ? std::optional(float(seen.lengthAndShifts & 0xffff)) : std::nullopt;
+    case FalseColor::FailedShifts: {
+        const uint32_t tried = seen.lengthAndShifts >> 16 & 0xff, failed = seen.lengthAndShifts >> 24;
+        return tried > 0 ? std::optional(float(failed) / float(tried)) : std::nullopt;
+    }
+    default: return std::nullopt;
+    }
+}
+
+bool sameTree(const shared::Inspection& a, const shared::Inspection& b)
+{
+    return a.seedFrame == b.seedFrame && a.seedPixel == b.seedPixel;
+}
+
+// Additive colors of the reservoirs that hold paths of one tree: all white, R and G yellow, ...; black: each its own.
+Color agreement(const Cell& cell, int count)
+{
+    Color color(0);
+    for (int c = 0; c < count; ++c) {
+        if (!(cell[c].weightSum > 0)) return NONE;
+        for (int d = 0; d < count; ++d)
+            if (d != c && sameTree(cell[c], cell[d])) color[std::min(c, 2)] = 1;
+    }
+    if (count == 2) color.z = color.y; // grouped: white or black
+    return color;
+}
+
+bool finite(const Cell& cell, int count)
+{
+    const glm::vec3& color = cell.shot.picture.pixels[cell.pixel];
+    bool good = std::isfinite(color.x) && std::isfinite(color.y) && std::isfinite(color.z);
+    for (int c = 0; c < count; ++c)
+        good =
+            good && std::isfinite(cell[c].weightSum) && std::isfinite(cell[c].target) && std::isfinite(cell[c].weight);
+    return good;
+}
+
+struct Range {
+    float low = 0, high = 1;
+};
+// Of weights: what 98 of 100 pixels lie in. Of the others: all there can be.
+Range rangeOf(const Shot& shot, FalseColor view, int c)
+{
+    if (view == FalseColor::FailedShifts) return {0, 1};
+    std::vector<float> values;
+    for (size_t pixel = 0; pixel < shot.picture.pixels.size(); ++pixel)
+        if (const std::optional<float> value = valueOf({shot, pixel}, view, c); value && std::isfinite(*value))
+            values.push_back(*value);
+    if (values.empty()) return {};
+    std::ranges::sort(values);
+    Range range{values.front(), values.back()};
+    if (view == FalseColor::Weight)
+        range = {values[values.size() / 100], values[values.size() - 1 - values.size() / 100]};
+    if (view == FalseColor::Length) range.low = 0;
+    if (range.high <= range.low) range.high = range.low + 1;
+    return range;
+}
+
+} // namespace
+
+int reservoirCount(const Shot& shot)
+{
+    return shot.picture.pixels.empty() ? 0 : int(shot.reservoirs.size() / shot.picture.pixels.size());
+}
+
+ScreenPicture falseColors(const Shot& shot, FalseColor view, int reservoir)
+{
+    ScreenPicture screen{.width = shot.picture.width, .height = shot.picture.height};
+    screen.rgba.resize(shot.picture.pixels.size() * 4);
+    const int count = reservoirCount(shot), c = std::clamp(reservoir, 0, std::max(count - 1, 0));
+    const bool numbers = view != FalseColor::Agreement && view != FalseColor::NotFinite;
+    const Range range = numbers && count > 0 ? rangeOf(shot, view, c) : Range{};
+    for (size_t pixel = 0; pixel < shot.picture.pixels.size(); ++pixel) {
+        const Cell cell{shot, pixel};
+        Color color = NONE;
+        if (view == FalseColor::NotFinite) {
+            color = finite(cell, count) ? Color(0.1f) : ALARM;
+        } else if (count > 0 && view == FalseColor::Agreement) {
+            color = count > 1 ? agreement(cell, count) : NONE;
+        } else if (count > 0) {
+            if (const std::optional<float> value = valueOf(cell, view, c))
+                color = std::isfinite(*value) ? ramp((*value - range.low) / (range.high - range.low)) : ALARM;
+        }
+        for (int i = 0; i < 3; ++i) screen.rgba[4 * pixel + size_t(i)] = uint8_t(std::lround(255 * color[i]));
+        screen.rgba[4 * pixel + 3] = 255;
+    }
+    return screen;
+}
+
+std::string legendOf(const Shot& shot, FalseColor view, int reservoir)
+{
+    const int count = reservoirCount(shot), c = std::clamp(reservoir, 0, std::max(count - 1, 0));
+    if (view == FalseColor::NotFinite) {
+        size_t wrong = 0;
+        for (size_t pixel = 0; pixel < shot.picture.pixels.size(); ++pixel) wrong += !finite({shot, pixel}, count);
+        return fmt::format("magenta: not finite, {} pixels", wrong);
+    }
+    if (count == 0) return "no reservoirs: choose a ReSTIR method";
+    if (view == FalseColor::Agreement) {
+        if (count == 1) return "one reservoir: nothing to agree with";
+        return count == 2 ? "white: both hold one path tree; black: each its own; gray: none"
+                          : "white: all hold one path tree; yellow, magenta, cyan: two of them; black: each its own; "
+                            "gray: none";
+    }
+    const Range range = rangeOf(shot, view, c);
+    switch (view) {
+    case FalseColor::Confidence: return fmt::format("dark {:.0f}, bright {:.0f} frames", range.low, range.high);
+    case FalseColor::Weight:
+        return fmt::format("W of reservoir {}: dark {:.3g}, bright {:.3g}", c, std::exp2(range.low),
+                           std::exp2(range.high));
+    case FalseColor::Length:
+        return fmt::format("path of reservoir {}: dark 0, bright {:.0f} scattering events", c, range.high);
+    default: return fmt::format("spatial shifts of reservoir {}: dark all done, bright all failed", c);
+    }
+}
+
+} // namespace ui

@@ -1,0 +1,135 @@
+#include "ui/window/widgets.h"
+
+#include <algorithm>
+#include <cinttypes>
+
+#include <imgui_stdlib.h>
+
+namespace ui
+{
+
+void remember(Places& places, const std::string& name)
+{
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places[name] = {int(low.x + high.x) / 2, int(low.y + high.y) / 2};
+}
+
+void explain(const char* text)
+{
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool choose(Places& places, const std::string& name, int& value, std::initializer_list<const char*> labels,
+            const char* doc)
+{
+    const int before = value;
+    int i = 0;
+    for (const char* label : labels) {
+        if (i > 0) ImGui::SameLine();
+        if (ImGui::RadioButton(fmt::format("{}##{}", label, name).c_str(), value == i)) value = i;
+        remember(places, fmt::format("{}.{}", name, i));
+        explain(doc);
+        ++i;
+    }
+    return value != before;
+}
+
+bool button(Places& places, const char* label, const std::string& name, const char* doc)
+{
+    const bool pressed = ImGui::Button(fmt::format("{}##{}", label, name).c_str());
+    remember(places, name);
+    explain(doc);
+    return pressed;
+}
+
+namespace
+{
+
+// Enumerations are told from their words: one button each.
+template <class T>
+requires std::is_enum_v<T>
+void edit(Places& places, const passes::Knob& knob, T& value, std::initializer_list<const char*> labels)
+{
+    ImGui::TextUnformatted(knob.name);
+    explain(knob.doc);
+    int index = int(value);
+    if (choose(places, knob.name, index, labels, knob.doc)) value = T(index);
+}
+
+void edit(Places& places, const passes::Knob& knob, passes::Method& value)
+{
+    edit(places, knob, value, {"off (pt)", "luminance", "RGB", "grouped"});
+}
+void edit(Places& places, const passes::Knob& knob, passes::Shift& value)
+{
+    edit(places, knob, value, {"replay", "reconnection", "hybrid"});
+}
+void edit(Places& places, const passes::Knob& knob, passes::PixelFilter& value)
+{
+    edit(places, knob, value, {"center", "box"});
+}
+void edit(Places& places, const passes::Knob& knob, bool& value)
+{
+    ImGui::Checkbox(knob.name, &value);
+    remember(places, knob.name);
+    explain(knob.doc);
+}
+void edit(Places& places, const passes::Knob& knob, uint32_t& value)
+{
+    const uint32_t low = uint32_t(knob.low), high = uint32_t(knob.high);
+    const auto flags = ImGuiSliderFlags_AlwaysClamp | (high > 1000 ? ImGuiSliderFlags_Logarithmic : 0);
+    ImGui::SliderScalar(knob.name, ImGuiDataType_U32, &value, &low, &high, "%u", flags);
+    remember(places, knob.name);
+    explain(knob.doc);
+}
+void edit(Places& places, const passes::Knob& knob, float& value)
+{
+    ImGui::SliderFloat(knob.name, &value, float(knob.low), float(knob.high), "%.3g",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    remember(places, knob.name);
+    explain(knob.doc);
+}
+void edit(Places&, const passes::Knob& knob, double& value)
+{
+    ImGui::InputDouble(knob.name, &value);
+    explain(knob.doc);
+}
+void edit(Places& places, const passes::Knob& knob, uint64_t& value)
+{
+    ImGui::InputScalar(knob.name, ImGuiDataType_U64, &value, nullptr, nullptr, "%" PRIu64,
+                       ImGuiInputTextFlags_EnterReturnsTrue);
+    remember(places, knob.name);
+    explain(knob.doc);
+}
+void edit(Places&, const passes::Knob& knob, std::string& value)
+{
+    std::string text = value;
+    if (ImGui::InputText(knob.name, &text, ImGuiInputTextFlags_EnterReturnsTrue)) value = text;
+    explain(knob.doc);
+}
+void edit(Places& places, const passes::Knob& knob, passes::SizeField<uint32_t>&& size)
+{
+    int values[2] = {int(size.width), int(size.height)};
+    if (ImGui::InputInt2(knob.name, values, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        size.width = uint32_t(std::clamp(values[0], 1, 8192));
+        size.height = uint32_t(std::clamp(values[1], 1, 8192));
+    }
+    remember(places, knob.name);
+    explain(knob.doc);
+}
+
+} // namespace
+
+void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const std::string&)>& wanted)
+{
+    passes::visitSettings(settings, [&]<class T>(const passes::Knob& knob, T&& field) {
+        if (wanted(knob.name)) edit(places, knob, std::forward<T>(field));
+    });
+}
+
+} // namespace ui

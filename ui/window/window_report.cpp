@@ -1,0 +1,72 @@
+#include "ui/window/window_report.h"
+
+#include "ui/window/false_color.h"
+
+#include <nlohmann/json.hpp>
+
+namespace ui
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+Json reportOf(const Shot& shot)
+{
+    return {{"scene", shot.order.scene},
+            {"settings", passes::toJson(shot.order.settings)},
+            {"frames", shot.frames},
+            {"seconds", shot.seconds},
+            {"moving", shot.order.moving},
+            {"camera_moved", shot.order.pose.has_value()},
+            {"paused", shot.order.paused},
+            {"reservoirs", reservoirCount(shot)},
+            {"memory_bytes", shot.stats.memoryBytes},
+            {"variant", shot.stats.variant},
+            {"nonfinite", shot.stats.nonFinite}};
+}
+
+Json reportOf(const View& view)
+{
+    return {{"first", int(view.first)}, {"second", int(view.second)},          {"layout", int(view.layout)},
+            {"wipe", view.wipe},        {"false_color", int(view.falseColor)}, {"flipped", view.flipped}};
+}
+
+} // namespace
+
+Json reportOf(const WindowState& state, const ErrorMeter& meter)
+{
+    Json json = Json::object();
+    if (state.pictures.sides[A]) json = reportOf(*state.pictures.sides[A]); // A at the top
+    if (state.pictures.sides[B]) json["b"] = reportOf(*state.pictures.sides[B]);
+    json["asked"] = {
+        {"settings", passes::toJson(state.order.settings)}, // what hands have set, whether it runs yet or not
+        {"comparing", state.order.rival.has_value()},
+        {"paused", state.order.paused},
+        {"moved", state.order.pose.has_value()},
+        {"pixel", state.pixel}};
+    json["activity"] = state.activity;
+    json["ahead"] = state.ahead;
+    json["message"] = state.message;
+    json["view"] = reportOf(state.view);
+    json["recent"] = state.recent;
+    json["reference"] = state.pictures.reference ? state.pictures.reference->name : "";
+    for (const Side side : {A, B}) {
+        const ErrorCurve curve = meter.curve(side);
+        Json errors = {{"points", curve.size()}};
+        if (!curve.empty()) errors.update({{"relmse", curve.back().metrics.relmse}, {"mse", curve.back().metrics.mse}});
+        json["errors"][side == A ? "a" : "b"] = errors;
+    }
+    if (const ShotPointer& shot = state.pictures.sides[A]; shot && state.hovered && state.pixel) {
+        json["hovered"] = *state.hovered;
+        const size_t pixel = size_t{(*state.hovered)[1]} * shot->picture.width + (*state.hovered)[0];
+        for (int c = 0; c < reservoirCount(*shot) && pixel < shot->picture.pixels.size(); ++c)
+            json["inspected"].push_back(shot->reservoirs[size_t(c) * shot->picture.pixels.size() + pixel].confidence);
+    }
+    json["scale"] = state.scale;
+    json["places"] = state.places;
+    return json;
+}
+
+} // namespace ui
