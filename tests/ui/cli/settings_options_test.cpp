@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "tests/support/program.h"
+#include "ui/cli/presets.h"
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,14 @@ TEST(SettingsOptions, PresetLosesToSetLosesToTheOwnOption)
     EXPECT_EQ(settings.frames, 31u);
     EXPECT_EQ(settings.seed, 23u);
     EXPECT_EQ(settings.spatial, 5u);
+}
+
+TEST(SettingsOptions, PresetsThatComeAlongAreKnownByName)
+{
+    EXPECT_EQ(ui::presetNames(), (std::vector<std::string>{"offline", "paper", "real-time"}));
+    for (const std::string& name : ui::presetNames()) EXPECT_NE(parse({"--preset", name}), passes::Settings{}) << name;
+    EXPECT_EQ(parse({"--preset", "paper"}).maxConfidence, 32768u);
+    EXPECT_THROW(parse({"--preset", "papers"}), Error);
 }
 
 TEST(SettingsOptions, KnowWhatTheCommandLineGave)
