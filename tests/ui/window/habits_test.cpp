@@ -15,7 +15,7 @@ class WindowHabits : public WindowTest
 
 TEST_F(WindowHabits, PresetsAndDropsSetWhatTheyNameAndUndoTakesItBack)
 {
-    writeFile(folder_ + "/mine.json", R"({"spatial": 1, "max-bounces": 1})");
+    writeFile(folder_ + "/mine.json", R"({"max-confidence": 7, "spatial-radius": 3})");
     writeFile(folder_ + "/wrong.json", R"({"spam": 1})");
     view();
     ASSERT_TRUE(comes(runs("method", "pt")));
@@ -27,13 +27,14 @@ TEST_F(WindowHabits, PresetsAndDropsSetWhatTheyNameAndUndoTakesItBack)
     EXPECT_EQ(report()["settings"]["spatial"], 0);
     EXPECT_EQ(report()["settings"]["max-bounces"], 2); // it does not name it
     ASSERT_TRUE(dropFile("Trichrome", folder_ + "/mine.json"));
-    ASSERT_TRUE(comes(runs("spatial", 1)));
-    EXPECT_EQ(report()["settings"]["max-bounces"], 1);
+    ASSERT_TRUE(comes(runs("max-confidence", 7)));
+    EXPECT_EQ(report()["settings"]["spatial-radius"], 3);
+    EXPECT_EQ(report()["settings"]["method"], "rgb-restir");
     ASSERT_TRUE(dropFile("Trichrome", folder_ + "/wrong.json"));
     ASSERT_TRUE(
         comes([](const Json& json) { return json["message"].get<std::string>().find("spam") != std::string::npos; }));
-    EXPECT_EQ(report()["settings"]["spatial"], 1);
-    ASSERT_TRUE(until(asks("spatial", 0), [] { key("ctrl+z"); }));
+    EXPECT_EQ(report()["settings"]["max-confidence"], 7);
+    ASSERT_TRUE(until(asks("max-confidence", 32768), [] { key("ctrl+z"); }));
     ASSERT_TRUE(until(asks("method", "pt"), [] { key("ctrl+z"); }));
     ASSERT_TRUE(comes(runs("method", "pt")));
     ASSERT_TRUE(until(asks("method", "rgb-restir"), [] { key("ctrl+y"); }));
