@@ -225,9 +225,9 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     bvh.stats.skippedTriangles = input.triangles.size() - primitives.size();
     // A triangle has at least one record: do not begin what cannot end well.
     requireFits("triangles", primitives.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
-    WideTree tree = collapse(buildBinaryTree(input, primitives, true));
+    WideTree tree = collapse(reinsert(buildBinaryTree(input, primitives, true)));
     if (bytesOf(tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE) > maxTableBytes) {
-        tree = collapse(buildBinaryTree(input, primitives, false));
+        tree = collapse(reinsert(buildBinaryTree(input, primitives, false)));
     }
     requireFits("triangles", tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
     const NodeLayout layout = layOut(tree);

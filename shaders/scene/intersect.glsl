@@ -5,8 +5,9 @@
 //
 // Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
 // least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
-// ray's signs. SwiftShader, which reads tables from storage buffers, compiles a nest of such loops wrongly: there the
-// inner one tests at its start (tests/bench/LOG.md).
+// ray's signs. From a loop that lanes leave at different times, Mesa 22.3 brings out right only variables that each round
+// makes from what they were before it. SwiftShader, which reads tables from storage buffers, compiles a nest of loops
+// that test at their end wrongly: there the inner ones test at their start (tests/bench/LOG.md).
 #ifdef TABLES_IN_STORAGE
 #define LOOP_BEGIN(CONDITION) while (CONDITION) {
 #define LOOP_END(CONDITION) }
@@ -187,9 +188,14 @@ bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out v
     return met;
 }
 
+// Node visits after which a search for the nearest hit sees to the triangles that other lanes have found. A search for
+// any hit only waits for its own: it ends at the first.
+const uint NODES_BEFORE_TRIANGLES = 3u;
+
 // Depth-first: the nearest first for the nearest hit; for any hit the farthest, as a ray begins along its own surface,
 // where it meets boxes but no triangles. A group is the rest of one node's child nodes: those to visit in bits 0..7, in
-// that order; above them what the slot adds to.
+// that order; above them what the slot adds to. Visits nodes until there are triangles, then tests them all, so that
+// lanes in lockstep test theirs together.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
 {
     uint stack[BVH_STACK_SIZE]; // of groups
@@ -202,22 +208,38 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     bool more = true;
     bool blocked = false;
     do {
-        uint slot = uint(findLSB(group)) ^ order;
-        uint node = BVH_NODE_STRIDE * ((group >> 8) + slot);
-        group &= group - 1u;
-        stack[depth] = group;
-        depth += (group & 255u) != 0u ? 1u : 0u;
+        // Of the node whose triangles are to be tested.
+        uint masks = 0u;
+        uint firstRecord = 0u;
+        uint triangles = 0u;
+        uint visits = 0u;
+        LOOP_BEGIN(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+            bool walks = triangles == 0u; // always; what leaves this loop must be made from what was (see the top)
+            ++visits;
+            uint slot = uint(findLSB(group)) ^ order;
+            uint node = BVH_NODE_STRIDE * ((group >> 8) + slot);
+            group &= group - 1u;
+            stack[depth] = group;
+            depth += (group & 255u) != 0u ? 1u : 0u;
 
-        uvec4 links = FETCH(Nodes, node + 1u);
-        uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
-                                 FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
-        group = links.y | inOrder(hits >> 24, order);
+            uvec4 links = FETCH(Nodes, node + 1u);
+            uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
+                                     FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
+            masks = walks ? links.x : masks;
+            firstRecord = walks ? links.z : firstRecord;
+            triangles |= hits & 0xffffffu;
+            group = links.y | inOrder(hits >> 24, order);
 
-        uint triangles = hits & 0xffffffu;
+            bool pops = (group & 255u) == 0u && depth != 0u;
+            depth -= pops ? 1u : 0u;
+            uint top = stack[depth];
+            group = pops ? top : group;
+        LOOP_END(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+
         LOOP_BEGIN(triangles != 0u)
             bool valid = triangles != 0u;
-            uint earlier = links.x & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
-            uint record = valid ? BVH_TRIANGLE_STRIDE * (links.z + uint(bitCount(earlier))) : 0u;
+            uint earlier = masks & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
+            uint record = valid ? BVH_TRIANGLE_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
             triangles &= triangles - 1u;
             uvec4 v0 = FETCH(Triangles, record);
             vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
@@ -242,12 +264,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             }
         LOOP_END(triangles != 0u)
 
-        bool empty = (group & 255u) == 0u;
-        more = !empty || depth != 0u;
-        depth -= empty && more ? 1u : 0u;
-        uint top = stack[depth];
-        group = empty ? top : group;
-        more = more && !blocked;
+        more = (group & 255u) != 0u && !blocked;
     } while (more);
     if (blocked) hit.triangle = 0u;
     hit.t = max(hit.t + r.advance, 0.0);

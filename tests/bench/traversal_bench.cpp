@@ -37,6 +37,7 @@ struct Options {
     uint32_t size = 512;
     uint32_t rounds = 9;
     uint32_t copies = 1;
+    std::vector<std::string> sets = {"camera", "shadow", "bounce", "second bounce", "second shadow"};
     unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     bool buildOnly = false;
     std::string json, csv;
@@ -280,6 +281,7 @@ void run(const Options& options)
         for (const RaySet& set : {RaySet{"camera", &rays.camera, false}, RaySet{"shadow", &rays.shadow, true},
                                   RaySet{"bounce", &rays.bounce, false}, RaySet{"second bounce", &rays.bounce2, false},
                                   RaySet{"second shadow", &rays.shadow2, true}}) {
+            if (std::ranges::find(options.sets, set.name) == options.sets.end()) continue;
             std::vector<Contestant> contestants;
             for (size_t i = 0; i < options.shaders.size(); ++i)
                 contestants.push_back(kernels.contestant(options.shaders[i], i, set.anyHit, *set.rays));
@@ -304,6 +306,7 @@ int main(int argc, char** argv)
     app.add_option("--device", options.device, "Vulkan device: index or part of its name");
     app.add_option("--shaders", options.shaders, "shader trees to compare in one run (this checkout's)");
     app.add_option("--size", options.size, "camera rays: SIZE x SIZE, a power of two (512)");
+    app.add_option("--sets", options.sets, "the sets of rays to trace (all)")->check(CLI::IsMember(options.sets));
     app.add_option("--rounds", options.rounds, "timed rounds; medians are reported (9)")->check(CLI::PositiveNumber);
     app.add_option("--copies", options.copies, "of the scene, side by side (1)")->check(CLI::PositiveNumber);
     app.add_option("--threads", options.threads, "Embree's (all cores)")->check(CLI::PositiveNumber);

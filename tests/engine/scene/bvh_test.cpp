@@ -370,6 +370,73 @@ TEST(BvhCollapse, IsNoDearerThanRandomCollapses)
     EXPECT_GT(best, 0.5 * cheapest) << "the costs do not mean the same";
 }
 
+// A balanced tree over leaves as they come, which is bad when they come in random order.
+scene::BinaryTree balanced(const std::vector<Box>& leaves)
+{
+    scene::BinaryTree tree;
+    const auto grow = [&](auto& self, size_t begin, size_t end) -> uint32_t {
+        scene::BinaryNode node = {.box = leaves[begin], .left = uint32_t(begin)};
+        if (end - begin > 1) {
+            node.left = self(self, begin, (begin + end) / 2);
+            node.right = self(self, (begin + end) / 2, end);
+            node.box = tree[node.left].box;
+            node.box.extend(tree[node.right].box);
+        }
+        tree.push_back(node);
+        return uint32_t(tree.size() - 1);
+    };
+    grow(grow, 0, leaves.size());
+    return tree;
+}
+
+TEST(BvhReinsert, KeepsLeavesFitsBoxesAndMakesTheTreeSmaller)
+{
+    Random random(13);
+    std::vector<Box> leaves;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::vec3 corner = random.point(1.0f);
+        leaves.push_back({corner, corner + glm::vec3(random.between(0, 0.02f))});
+    }
+    const scene::BinaryTree before = balanced(leaves);
+    const scene::BinaryTree after = scene::reinsert(before);
+    ASSERT_EQ(after.size(), before.size());
+    std::set<uint32_t> seenLeaves, seenChildren;
+    double areaBefore = 0, areaAfter = 0;
+    for (uint32_t i = 0; i < after.size(); ++i) {
+        const scene::BinaryNode& node = after[i];
+        areaBefore += double(before[i].box.halfArea());
+        areaAfter += double(node.box.halfArea());
+        Box expected = leaves[0];
+        if (node.isLeaf()) {
+            EXPECT_TRUE(seenLeaves.insert(node.left).second);
+            expected = leaves.at(node.left);
+        } else {
+            ASSERT_LT(std::max(node.left, node.right), i) << "children come before parents";
+            EXPECT_TRUE(seenChildren.insert(node.left).second && seenChildren.insert(node.right).second);
+            expected = after[node.left].box;
+            expected.extend(after[node.right].box);
+        }
+        EXPECT_TRUE(node.box.lower == expected.lower && node.box.upper == expected.upper);
+    }
+    EXPECT_EQ(seenLeaves.size(), leaves.size());
+    EXPECT_EQ(seenChildren.size(), after.size() - 1);
+    EXPECT_LT(areaAfter, 0.96 * areaBefore);
+}
+
+// Boxes within boxes: the smallest tree is a chain, longer than what the stack holds.
+TEST(BvhReinsert, LeavesATreeThatWouldGetTooDeep)
+{
+    std::vector<Box> leaves;
+    for (int i = 0; i < 2000; ++i) leaves.push_back({glm::vec3(0), glm::vec3(std::pow(1.03f, float(i - 1000)))});
+    std::shuffle(leaves.begin(), leaves.end(), std::mt19937(3));
+    const scene::BinaryTree before = balanced(leaves);
+    const scene::BinaryTree after = scene::reinsert(before);
+    std::vector<uint32_t> heights;
+    for (const scene::BinaryNode& node : after)
+        heights.push_back(node.isLeaf() ? 0 : 1 + std::max(heights[node.left], heights[node.right]));
+    EXPECT_LE(heights.back(), scene::BVH_MAX_BINARY_DEPTH);
+}
+
 TEST(Bvh, ThatDoesNotFitIsAnErrorAndSplitsGiveWayFirst)
 {
     const Mesh mesh = soup(5000, 7);
