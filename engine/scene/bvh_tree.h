@@ -65,8 +65,8 @@ struct WideTree {
     uint32_t levels = 0;
 };
 
-// Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large nodes
-// where they enlarge the tree least. At most BVH_MAX_BINARY_DEPTH deep if the given tree was.
+// Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large
+// nodes where they enlarge the tree least. At most BVH_MAX_BINARY_DEPTH deep if the given tree was.
 BinaryTree reinsert(BinaryTree tree);
 
 // Ylitie et al. 2017, Section 3.1: the set of binary nodes that gives the cheapest wide tree by the surface area
