@@ -10,7 +10,7 @@ const bool HAS_ALPHA = false;
 
 TABLE(SET_SCENE, 0, Nodes);
 TABLE(SET_SCENE, 1, Triangles);
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Rays { vec4 rays[]; };    // origin, tMax; direction, unused
+TABLE(SET_PASS, 0, Rays); // origin, tMax; direction, unused. A table: loads are not what is to be timed
 layout(set = SET_PASS, binding = 1, std430) writeonly buffer Hits { uvec4 hits[]; }; // triangle or occluded, u, v, t
 
 bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed) { return true; }
@@ -21,8 +21,8 @@ void main()
 {
     uint index = gl_GlobalInvocationID.x;
     if (index >= uint(hits.length())) return;
-    vec4 origin = rays[2u * index];
-    Ray ray = Ray(origin.xyz, rays[2u * index + 1u].xyz, origin.w);
+    vec4 origin = uintBitsToFloat(FETCH(Rays, 2u * index));
+    Ray ray = Ray(origin.xyz, uintBitsToFloat(FETCH(Rays, 2u * index + 1u).xyz), origin.w);
     if (ANY_HIT) {
         hits[index] = uvec4(occluded(ray, 0u) ? 0u : NO_HIT, 0u, 0u, 0u);
     } else {

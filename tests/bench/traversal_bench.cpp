@@ -124,7 +124,7 @@ class Kernels
         };
         const gpu::ComputePipeline& pipeline = pipelines_[2 * tree + (anyHit ? 1 : 0)];
         auto state = std::make_shared<State>();
-        state->rays = upload("rays", std::as_bytes(std::span(rays)), gpu::Usage::Storage);
+        state->rays = upload("rays", std::as_bytes(std::span(rays)), gpu::Usage::Table);
         state->hits = device_.createBuffer({.label = "hits", .size = rays.size() * sizeof(glm::uvec4)});
         state->scene =
             device_.createBindGroup({"scene", &pipeline, SET_SCENE, {{"Nodes", &nodes_}, {"Triangles", &triangles_}}});
