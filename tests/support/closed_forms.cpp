@@ -17,30 +17,12 @@ namespace
 using glm::dvec3;
 
 constexpr double PI = std::numbers::pi;
-const glm::vec3 ALBEDO = {0.5f, 0.4f, 0.3f};
-
 passes::Settings square(uint32_t size, uint32_t maxBounces)
 {
     passes::Settings settings;
     settings.width = settings.height = size;
     settings.maxBounces = maxBounces;
     return settings;
-}
-
-// The floor y = 0, seen straight from above: the picture's point (x, y) is the floor's point (x, 0, y).
-scene::Scene floorFromAbove()
-{
-    scene::Scene scene;
-    scene::addQuad(scene, scene::addMaterial(scene, scene::diffuse("floor", ALBEDO)), {-2, 0, 2}, {4, 0, 0},
-                   {0, 0, -4});
-    scene::Camera camera;
-    camera.position = {0, 1, 0};
-    camera.right = {1, 0, 0};
-    camera.up = {0, 0, -1};
-    camera.forward = {0, -1, 0};
-    camera.yfov = PI / 2;
-    scene.cameras.push_back(camera);
-    return scene;
 }
 
 ClosedForm pointLight(uint32_t size)
@@ -51,7 +33,7 @@ ClosedForm pointLight(uint32_t size)
     return {"PointLight", scene, square(size, 1), [=](double x, double y) {
                 const dvec3 to = at - dvec3(x, 0, y);
                 const double r = glm::length(to);
-                return dvec3(ALBEDO) / PI * intensity * to.y / (r * r * r);
+                return dvec3(FLOOR_ALBEDO) / PI * intensity * to.y / (r * r * r);
             }};
 }
 
@@ -68,7 +50,7 @@ ClosedForm spotLight(uint32_t size)
                 const double r2 = x * x + y * y + 1, cosine = 1 / std::sqrt(r2);
                 const double cosInner = std::cos(double{inner}), cosOuter = std::cos(double{outer});
                 const double s = std::clamp((cosine - cosOuter) / (cosInner - cosOuter), 0.0, 1.0);
-                return dvec3(ALBEDO) / PI * (s * s * cosine / r2);
+                return dvec3(FLOOR_ALBEDO) / PI * (s * s * cosine / r2);
             }};
 }
 
@@ -78,24 +60,7 @@ ClosedForm directionalLight(uint32_t size)
     scene.lights.push_back(
         {.kind = scene::LightKind::Directional, .intensity = {1, 2, 3}, .direction = {0.6f, -0.8f, 0}});
     return {"DirectionalLight", scene, square(size, 1),
-            [](double, double) { return dvec3(ALBEDO) / PI * 0.8 * dvec3(1, 2, 3); }};
-}
-
-// Four corner configurations make the form factor of any parallel rectangle (Siegel and Howell).
-ClosedForm rectangleLight(uint32_t size)
-{
-    scene::Scene scene = floorFromAbove();
-    const uint32_t light = scene::addMaterial(scene, scene::emitter("light", {1, 2, 4}));
-    scene::addQuad(scene, light, {0, 1.25f, 0}, {1.5f, 0, 0}, {0, 0, 0.75f}); // front down
-    return {"RectangleLight", scene, square(size, 1), [](double x, double y) {
-                const auto corner = [](double u, double v) {
-                    const double a = u / 1.25, b = v / 1.25, A = std::sqrt(1 + a * a), B = std::sqrt(1 + b * b);
-                    return (a / A * std::atan(b / A) + b / B * std::atan(a / B)) / (2 * PI);
-                };
-                const double factor =
-                    corner(1.5 - x, 0.75 - y) - corner(-x, 0.75 - y) - corner(1.5 - x, -y) + corner(-x, -y);
-                return dvec3(ALBEDO) * factor * dvec3(1, 2, 4);
-            }};
+            [](double, double) { return dvec3(FLOOR_ALBEDO) / PI * 0.8 * dvec3(1, 2, 3); }};
 }
 
 // Each texel fills half the azimuth; the rows end at 45 and 90 degrees: half of the floor's irradiance each.
@@ -104,10 +69,47 @@ ClosedForm sky(uint32_t size)
     scene::Scene scene = floorFromAbove();
     scene.environment = {
         2, 4, {{1, 0, 0}, {0, 1, 0}, {0, 0, 3}, {0, 0, 5}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}, {9, 9, 9}}};
-    return {"Sky", scene, square(size, 1), [](double, double) { return dvec3(ALBEDO) * dvec3(0.25, 0.25, 2); }};
+    return {"Sky", scene, square(size, 1), [](double, double) { return dvec3(FLOOR_ALBEDO) * dvec3(0.25, 0.25, 2); }};
 }
 
 } // namespace
+
+const glm::vec3 FLOOR_ALBEDO = {0.5f, 0.4f, 0.3f};
+
+scene::Scene floorFromAbove()
+{
+    scene::Scene scene;
+    scene::addQuad(scene, scene::addMaterial(scene, scene::diffuse("floor", FLOOR_ALBEDO)), {-2, 0, 2}, {4, 0, 0},
+                   {0, 0, -4});
+    scene::Camera camera;
+    camera.position = {0, 1, 0};
+    camera.right = {1, 0, 0};
+    camera.up = {0, 0, -1};
+    camera.forward = {0, -1, 0};
+    camera.yfov = PI / 2;
+    scene.cameras.push_back(camera);
+    return scene;
+}
+
+// Four corner configurations make the form factor of any parallel rectangle (Siegel and Howell).
+ClosedForm rectangleLight(uint32_t size, uint32_t columns, uint32_t rows)
+{
+    scene::Scene scene = floorFromAbove();
+    const uint32_t light = scene::addMaterial(scene, scene::emitter("light", {1, 2, 4}));
+    const float width = 1.5f / float(columns), depth = 0.75f / float(rows);
+    for (uint32_t i = 0; i < columns; ++i)
+        for (uint32_t j = 0; j < rows; ++j) // front down
+            scene::addQuad(scene, light, {width * float(i), 1.25f, depth * float(j)}, {width, 0, 0}, {0, 0, depth});
+    return {"RectangleLight", scene, square(size, 1), [](double x, double y) {
+                const auto corner = [](double u, double v) {
+                    const double a = u / 1.25, b = v / 1.25, A = std::sqrt(1 + a * a), B = std::sqrt(1 + b * b);
+                    return (a / A * std::atan(b / A) + b / B * std::atan(a / B)) / (2 * PI);
+                };
+                const double factor =
+                    corner(1.5 - x, 0.75 - y) - corner(-x, 0.75 - y) - corner(1.5 - x, -y) + corner(-x, -y);
+                return dvec3(FLOOR_ALBEDO) * factor * dvec3(1, 2, 4);
+            }};
+}
 
 ClosedForm furnace(uint32_t size, uint32_t maxBounces)
 {

@@ -24,6 +24,14 @@ struct ClosedForm {
 std::vector<ClosedForm> closedForms(uint32_t size);
 void PrintTo(const ClosedForm& form, std::ostream* os);
 
+// The floor y = 0, of FLOOR_ALBEDO, seen straight from above: the picture's point (x, y) is the floor's point (x, 0,
+// y).
+scene::Scene floorFromAbove();
+extern const glm::vec3 FLOOR_ALBEDO;
+
+// That floor under a rectangle at height 1.25 that shines down, made of columns x rows equal parts.
+ClosedForm rectangleLight(uint32_t size, uint32_t columns = 1, uint32_t rows = 1);
+
 // The inside of a glowing sphere: L = Le (1 + rho + ... + rho^D).
 ClosedForm furnace(uint32_t size, uint32_t maxBounces);
 
