@@ -117,8 +117,9 @@ ClosedForm furnace(uint32_t size, uint32_t maxBounces)
             [=](double, double) { return 1.0 - glm::pow(dvec3(scene::FURNACE_ALBEDO), dvec3(maxBounces + 1.0)); }};
 }
 
-// E = integral over half vectors of D G2 (o.h) / cos o, where the mirrored direction leaves the surface; the variable
-// of h is the cumulative sum of D cos h, so that narrow lobes are as smooth as wide ones.
+// E = integral over half vectors of D G2 (o.h) / cos o, where the mirrored direction leaves the surface; the variable u
+// of h is the cumulative sum of D cos h, so that narrow lobes are as smooth as wide ones. At grazing angles half
+// vectors near the horizon count, so that steps shrink towards both ends of u.
 double ggxAlbedo(double width, double cosine)
 {
     constexpr int STEPS = 1000;
@@ -126,12 +127,12 @@ double ggxAlbedo(double width, double cosine)
     const double sine = std::sqrt(1 - cosine * cosine);
     double sum = 0;
     for (int i = 0; i < STEPS; ++i) {
-        const double u = (i + 0.5) / STEPS;
-        const double cosH = std::sqrt((1 - u) / (1 + (width * width - 1) * u)), sinH = std::sqrt(1 - cosH * cosH);
+        const double t = (i + 0.5) / STEPS, rest = (1 - t) * (1 - t) * (1 + 2 * t), u = 1 - rest, du = 6 * t * (1 - t);
+        const double cosH = std::sqrt(rest / (1 + (width * width - 1) * u)), sinH = std::sqrt(1 - cosH * cosH);
         for (int j = 0; j < STEPS; ++j) {
             const double oh = cosine * cosH + sine * sinH * std::cos(PI * (j + 0.5) / STEPS);
             const double cosI = 2 * oh * cosH - cosine;
-            if (oh > 0 && cosI > 0) sum += oh / (cosine * cosH * (1 + lambda(cosine) + lambda(cosI)));
+            if (oh > 0 && cosI > 0) sum += du * oh / (cosine * cosH * (1 + lambda(cosine) + lambda(cosI)));
         }
     }
     return sum / (double{STEPS} * STEPS);
