@@ -57,7 +57,7 @@ std::string gnuplotScript(const Plot& plot)
     if (plot.logX) script += "set logscale x\n";
     if (plot.logY) script += "set logscale y\n";
 
-    std::string curves;
+    std::string bars, curves; // gnuplot leaves a white spot below each bar: bars are drawn first
     for (size_t s = 0; s < plot.series.size(); ++s) {
         const Series& series = plot.series[s];
         const bool interval = !series.low.empty();
@@ -78,14 +78,13 @@ std::string gnuplotScript(const Plot& plot)
         }
         if (rows.empty()) continue;
         script += fmt::format("$data{} << EOD\n{}EOD\n", s, rows);
-        const auto add = [&](const std::string& curve) { curves += (curves.empty() ? "plot " : ", \\\n  ") + curve; };
-        add(fmt::format("$data{} using 1:2 {} title {}", s, styleOf(series), gnuplotText(series.name)));
+        curves += fmt::format("$data{} using 1:2 {} title {}, ", s, styleOf(series), gnuplotText(series.name));
         if (interval)
-            add(fmt::format("$data{} using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb \"{}\" notitle", s,
-                            COLORS[size_t(series.color) % std::size(COLORS)]));
+            bars += fmt::format("$data{} using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb \"{}\" notitle, ", s,
+                                COLORS[size_t(series.color) % std::size(COLORS)]);
     }
     if (curves.empty()) return script + "set xrange [1:10]\nset yrange [1:10]\nplot NaN notitle\n";
-    return script + curves + "\n";
+    return script + "plot " + bars + curves + "\n"; // gnuplot allows the last comma
 }
 
 std::optional<std::string> drawSvg(const Plot& plot)

@@ -113,7 +113,9 @@ TEST_F(Converge, CtrlCLeavesAPartialReportThatResumeCompletes)
         if (outcome.exitCode == 0) break;
         EXPECT_EQ(outcome.exitCode, 130);
         partial = std::filesystem::exists(directory / "out/index.html");
-        if (partial) EXPECT_NE(outcome.err.find("partial"), std::string::npos) << outcome.err;
+        if (partial) {
+            EXPECT_NE(outcome.err.find("partial"), std::string::npos) << outcome.err;
+        }
     }
     ASSERT_TRUE(partial);
     EXPECT_NE(file("out/index.html").find("class=\"partial\""), std::string::npos);
