@@ -153,10 +153,13 @@ TEST_F(RaceTest, AMovingCameraIsMeasuredAgainstEachFramesOwnView)
     ASSERT_EQ(repeat.samples.size(), 3u); // after 1, 2 and 4 frames
     EXPECT_EQ(against.made().size(), 3u);
     for (const passes::Sample& sample : repeat.samples) EXPECT_FALSE(sample.average);
-    // The last frame is far from what the first saw, and not from its own reference.
+    // The last frame is far from what the first saw, and in the mean over repeats not from its own reference.
     const image::Image& own = against.after(4)->picture;
-    const double right = image::measure(own, repeat.finals[0]).meanRatio.g;
-    EXPECT_NEAR(right, 1, 0.15);
+    double ratio = 0;
+    constexpr uint64_t REPEATS = 64;
+    for (uint64_t seed = 0; seed < REPEATS; ++seed)
+        ratio += image::measure(own, run(race, against, seed).finals[0]).meanRatio.g / double(REPEATS);
+    EXPECT_NEAR(ratio, 1, 0.1);
     EXPECT_GT(image::measure(against.after(1)->picture, own).relmse, 0.05);
 }
 
