@@ -48,9 +48,9 @@ class Renderer
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
-    // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so that
-    // methods can be compared in turns; wait() after each frame of either keeps their times apart. The environment must
-    // be the sibling's.
+    // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
+    // that methods can be compared in turns; wait() after each frame of either keeps their times apart. The environment
+    // must be the sibling's.
     Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
     // How many runs of the picture fit a device's largest binding.

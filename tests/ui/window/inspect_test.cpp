@@ -49,8 +49,17 @@ TEST_F(InspectWindow, ReservoirsAreReadWhenAskedForAndTheLayersAreSilent)
         return shown.size();
     };
     EXPECT_GT(colorsShown(), 100u); // a picture
-    for (int view = 1; view <= 6; ++view)
-        ASSERT_TRUE(until([&](const Json& json) { return json["view"]["false_color"] == view; }, [] { key("x"); }));
+    // A slow machine may take two keys at once and leave a view out: round and round until all were there.
+    std::set<int> seen;
+    int view = 0;
+    for (int press = 0; press < 60 && (seen.size() < 7 || view != 6); ++press) {
+        key("x");
+        shell("sleep 0.5");
+        view = report()["view"]["false_color"];
+        seen.insert(view);
+    }
+    ASSERT_EQ(seen.size(), 7u);
+    ASSERT_EQ(view, 6);
     shell("sleep 0.3");
     EXPECT_LT(colorsShown(), 12u); // nothing is not finite: one dark gray, and the mouse
     ASSERT_TRUE(until([&](const Json& json) { return json["view"]["false_color"] == 0; }, [] { key("x"); }));
