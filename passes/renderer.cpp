@@ -1,6 +1,6 @@
 #include "passes/renderer.h"
 
-#include "engine/base/check.h"
+#include "engine/base/fingerprint.h"
 #include "passes/camera_choice.h"
 #include "passes/estimator.h"
 
@@ -73,6 +73,9 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
+    const double scales[] = {lengthScale_, radianceScale_};
+    sceneFingerprint_ = fingerprint(std::as_bytes(std::span(scales)), scene_->contents());
+    sceneFingerprint_ = fingerprint(std::as_bytes(std::span(&frame_.camera, 1)), sceneFingerprint_);
     createStages();
 }
 

@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
@@ -39,6 +41,14 @@ struct RenderStats {
     std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
 };
 
+// All that the next frame needs of those before it.
+struct RendererState {
+    uint64_t frames = 0;        // on the film
+    uint64_t historyFrames = 0; // of reservoirs that the next frame may reuse
+    shared::CameraUniform camera = {}, previousCamera = {};
+    std::vector<std::pair<std::string, std::vector<std::byte>>> buffers; // by name, as on the device
+};
+
 class Renderer
 {
   public:
@@ -68,6 +78,12 @@ class Renderer
     std::vector<uint32_t> readPreviousPixels();
     RenderStats stats(); // waits
 
+    // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
+    // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit.
+    RendererState save(); // waits
+    void restore(const RendererState& state);
+    uint64_t sceneFingerprint() const { return sceneFingerprint_; } // geometry, materials, lights, first camera
+
   private:
     void createBuffers();
     void createStages();
@@ -77,6 +93,7 @@ class Renderer
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
     uint32_t pictureHeight() const { return settings_.height * runs_; }
+    std::vector<gpu::Buffer*> lastingBuffers();
 
     gpu::Device& device_;
     Settings settings_;
@@ -85,6 +102,7 @@ class Renderer
     scene::SceneFeatures sceneFeatures_;
     bool orthographic_ = false;
     double lengthScale_ = 1, radianceScale_ = 1;
+    uint64_t sceneFingerprint_ = 0;
     Variant variant_;
     RenderStats stats_;
     shared::FrameUniform frame_ = {};

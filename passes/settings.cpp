@@ -1,6 +1,7 @@
 #include "passes/settings.h"
 
 #include "engine/base/error.h"
+#include "engine/base/fingerprint.h"
 
 #include <array>
 #include <charconv>
@@ -260,16 +261,9 @@ void apply(Settings& settings, const nlohmann::ordered_json& preset)
 
 std::string hash(const Settings& settings)
 {
-    // FNV-1a, 64 bits. Names and values are set apart by bytes that no value contains.
-    uint64_t state = 14695981039346656037ull;
-    const auto eat = [&](std::string_view text) {
-        for (const char c : text) state = (state ^ static_cast<uint8_t>(c)) * 1099511628211ull;
-        state = state * 1099511628211ull; // a zero byte
-    };
-    for (const auto& [name, value] : toText(settings)) {
-        eat(name);
-        eat(value);
-    }
+    uint64_t state = 0;
+    for (const auto& [name, value] : toText(settings))
+        state = fingerprint(std::as_bytes(std::span(value)), fingerprint(std::as_bytes(std::span(name)), state));
     return fmt::format("{:016x}", state);
 }
 

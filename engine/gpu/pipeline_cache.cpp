@@ -3,6 +3,7 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/fingerprint.h"
 #include "engine/gpu/vulkan.h"
 
 #include <cstring>
@@ -14,7 +15,7 @@ namespace
 {
 
 constexpr std::array<char, 8> MAGIC = {'T', 'R', 'I', 'P', 'I', 'P', 'E', '\n'};
-constexpr uint32_t FORMAT_VERSION = 1;
+constexpr uint32_t FORMAT_VERSION = 2;
 constexpr uint64_t MAX_CACHE_BYTES = uint64_t{256} << 20;
 
 struct Header {
@@ -25,14 +26,6 @@ struct Header {
     uint64_t checksum = 0; // of the blob
 };
 static_assert(sizeof(Header) == 56, "no padding: every byte of the file is checked");
-
-// FNV-1a, 64 bits.
-uint64_t checksum(std::span<const std::byte> bytes)
-{
-    uint64_t hash = 0xcbf29ce484222325;
-    for (const std::byte byte : bytes) hash = (hash ^ uint64_t(byte)) * 0x100000001b3;
-    return hash;
-}
 
 CacheOwner ownerOf(const VkPhysicalDeviceProperties& properties)
 {
@@ -47,7 +40,7 @@ CacheOwner ownerOf(const VkPhysicalDeviceProperties& properties)
 
 std::vector<std::byte> sealCache(const CacheOwner& owner, std::span<const std::byte> blob)
 {
-    const Header header = {.owner = owner, .size = blob.size(), .checksum = checksum(blob)};
+    const Header header = {.owner = owner, .size = blob.size(), .checksum = fingerprint(blob)};
     std::vector<std::byte> file(sizeof(header) + blob.size());
     std::memcpy(file.data(), &header, sizeof(header));
     std::ranges::copy(blob, file.begin() + sizeof(header));
@@ -61,7 +54,7 @@ std::optional<std::vector<std::byte>> openCache(const CacheOwner& owner, std::sp
     std::memcpy(&header, file.data(), sizeof(header));
     const std::span blob = file.subspan(sizeof(header));
     const bool ours = header.magic == MAGIC && header.version == FORMAT_VERSION && header.owner == owner;
-    if (!ours || header.size != blob.size() || header.checksum != checksum(blob)) return std::nullopt;
+    if (!ours || header.size != blob.size() || header.checksum != fingerprint(blob)) return std::nullopt;
     return std::vector(blob.begin(), blob.end());
 }
 

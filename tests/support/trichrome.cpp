@@ -27,11 +27,11 @@ bool isIn(const std::vector<std::string>& words, const std::string& word)
 
 } // namespace
 
-Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter)
+Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter, int signal)
 {
     if (arguments.size() > 1 && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
         arguments.insert(arguments.end(), {"--device", deviceName()});
-    return runProgram(executable(), {.arguments = std::move(arguments), .interruptAfter = interruptAfter});
+    return runProgram(executable(), {.arguments = std::move(arguments), .signalAfter = signalAfter, .signal = signal});
 }
 
 Outcome Trichrome::runWell(const std::vector<std::string>& arguments)

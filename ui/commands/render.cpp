@@ -1,6 +1,7 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
 #include "passes/renderer.h"
+#include "ui/cli/checkpoint_options.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
 #include "ui/cli/motion_options.h"
@@ -33,42 +34,48 @@ struct RenderCommand {
     bool quiet = false;
     DeviceOptions device;
     MotionOptions motion;
+    CheckpointOptions checkpoint;
     SettingsOptions settings;
 
-    int run() const;
+    int run();
 };
 
 // Until the settings say stop, or Ctrl-C does.
-void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, Progress& progress, RunReport& report)
+void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, CheckpointOptions& checkpoint,
+                  Progress& progress, RunReport& report)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
     const Interrupt interrupt;
+    const double before = checkpoint.start(renderer, report);
     const auto start = std::chrono::steady_clock::now();
-    double elapsed = 0;
+    double elapsed = before;
+    report.frames = renderer.frameCount();
     const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
-    do {
+    while (report.frames == 0 || !(finished() || interrupt.requested())) {
         if (cameraAt) renderer.setCamera(cameraAt(report.frames));
         renderer.renderFrame();
         report.frames = renderer.frameCount();
-        elapsed = secondsSince(start);
+        elapsed = before + secondsSince(start);
+        checkpoint.keep(renderer, elapsed);
         if (byTime)
             progress.show("Rendering", elapsed, wanted.seconds);
         else
             progress.show("Rendering", double(report.frames), wanted.frames, "frames");
-    } while (!finished() && !interrupt.requested());
+    }
     renderer.wait();
-    report.wallSeconds = secondsSince(start);
+    report.wallSeconds = before + secondsSince(start);
     report.partial = !finished();
     progress.clear();
 }
 
-int RenderCommand::run() const
+int RenderCommand::run()
 {
     RunReport report{.scene = scene, .settings = settings.read(), .extra = motion.toText()};
     motion.adjust(report.settings, settings);
     requireWritable(output, {".exr", ".png"});
     if (!stats.empty()) requireWritable(stats);
+    checkpoint.requireWritable();
 
     Progress progress(quiet);
     const auto loadStart = std::chrono::steady_clock::now();
@@ -80,12 +87,13 @@ int RenderCommand::run() const
     passes::Renderer renderer(gpu, world, report.settings,
                               [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
 
-    renderFrames(renderer, cameraAt, progress, report);
+    renderFrames(renderer, cameraAt, checkpoint, progress, report);
     const image::Image picture = renderer.readColor();
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
     image::write(output, picture, metadataOf(report));
     if (!stats.empty()) writeText(stats, toJson(report).dump(2) + "\n");
+    checkpoint.finish(renderer, report.wallSeconds);
 
     for (const auto& [stage, count] : report.stats.nonFinite)
         if (count > 0)
@@ -113,6 +121,7 @@ Action setUpRender(CLI::App& app)
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);
     command->motion.addTo(app);
+    command->checkpoint.addTo(app);
     command->settings.addTo(app);
     return [command] { return command->run(); };
 }
