@@ -114,6 +114,7 @@ Instance::Instance(bool validation)
 
 Instance::~Instance()
 {
+    if (!instance_) return;
     if (messenger_) {
         const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
             vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));

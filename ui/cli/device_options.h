@@ -19,6 +19,7 @@ class DeviceOptions
 
   private:
     std::string device_, shaders_;
+    double stall_ = gpu::DeviceDescriptor().stallSeconds;
 };
 
 } // namespace ui
