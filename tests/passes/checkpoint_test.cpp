@@ -127,7 +127,7 @@ class CheckpointOfRenderer : public GpuTest
     static scene::Scene glossy()
     {
         for (const support::TestScene& test : support::testScenes())
-            if (test.name == "Glossy") return test.make();
+            if (std::string(test.name) == "Glossy") return test.make();
         throw std::invalid_argument("Glossy");
     }
 };

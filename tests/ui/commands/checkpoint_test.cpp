@@ -36,7 +36,7 @@ class CheckpointCommand : public Trichrome
 
 TEST_F(CheckpointCommand, AFinishedRenderGetsMoreFramesAsIfItHadNeverEnded)
 {
-    for (const std::string& method : {"pt", "rgb-restir"})
+    for (const std::string method : {"pt", "rgb-restir"})
         for (const std::vector<std::string>& motion : std::vector<std::vector<std::string>>{{}, {"--orbit", "3"}}) {
             const auto with = [&](std::vector<std::string> words) {
                 words.insert(words.end(), {"--method", method});
