@@ -116,3 +116,19 @@ TEST_F(Faults, EndInOneSentenceOrARecoveryWithEveryFileWhole)
     }
     for (const auto& [outcome, count] : outcomes) std::printf("%d faults %s\n", count, outcome.c_str());
 }
+
+TEST_F(Faults, CtrlCAtAnyMomentLeavesWholeFilesOrThoseBefore)
+{
+    for (const int milliseconds : {5, 40, 90, 170, 330, 600, 1100}) {
+        for (const std::string& file : {picture, stats, checkpoint}) writeFile(file, "before");
+        const Outcome outcome = run({"render", "cornell", "-o", picture, "--size", "32x18", "--frames", "1000000",
+                                     "--stats", stats, "--checkpoint", checkpoint, "--checkpoint-interval", "0"},
+                                    std::chrono::milliseconds(milliseconds));
+        SCOPED_TRACE(fmt::format("after {} ms: {}", milliseconds, outcome.err));
+        EXPECT_EQ(outcome.exitCode, 130);
+        if (readFile(picture) != "before") EXPECT_EQ(image::read(picture).image.pixels.size(), 32u * 18u);
+        if (readFile(stats) != "before") EXPECT_EQ(readJson(stats)["partial"], true);
+        if (readFile(checkpoint) != "before") EXPECT_GT(passes::readCheckpoint(checkpoint).state.frames, 0u);
+        EXPECT_EQ(directory.entries(), (std::vector<std::string>{"out.exr", "stats.json", "x.ckpt"}));
+    }
+}
