@@ -226,7 +226,7 @@ void addMaterials(std::vector<ExtremeCase>& cases)
         known("box of albedo 0.9999, 256 bounces", "mean path length 10^4, cut: 1 - albedo^257", whiteBox(256));
     box.settings.width = box.settings.height = 8;
     box.settings.frames = 3;
-    box.runs = 12;
+    box.runs = 120;
     cases.push_back(box);
     for (const double cosine : {1e-2, 1e-4, 1e-6})
         cases.push_back(known(fmt::format("seen at cosine {:g}", cosine), "GGX masking at grazing angles",
@@ -242,6 +242,7 @@ void addLights(std::vector<ExtremeCase>& cases)
     }
     cases.push_back(sampled("1e8 inside one picture", "a lamp of 1e6 over surfaces of 1e-2", wideRange()));
     cases.push_back(sampled("red light only", "targets that are 0 in two channels", dimmed(glossyBall(), {1, 0, 0})));
+    cases.back().runs = 200;
     cases.push_back(sampled("blue lamp of 1000", "channels far apart",
                             withLamp({0, 0, 1e3f}, {1.5f, 0.2f, 0.5f}, {0.1f, 0, 0}, {0, 0.1f, 0})));
     cases.push_back(sampled("no light", "no weight at all", dimmed(glossyBall(), vec3(0))));
@@ -280,19 +281,9 @@ void addHistories(std::vector<ExtremeCase>& cases)
             sampled(fmt::format("M_c = {}", maxConfidence), "confidences; the complement in merges", glossyBall());
         c.settings.maxConfidence = maxConfidence;
         c.settings.frames = 20;
-        c.runs = 24;
+        c.runs = 72;
         cases.push_back(c);
     }
-    // The film's sum of all frames, of reservoirs that stand for all of them.
-    ExtremeCase film =
-        known("3000 frames accumulated", "the film's sum; M_c = 2^20 at rest", support::rectangleLight(2));
-    film.settings.width = film.settings.height = 2;
-    film.settings.maxConfidence = 1u << 20;
-    film.settings.spatial = 0;
-    film.settings.frames = 3000;
-    film.settings.average = true;
-    film.runs = 4;
-    cases.push_back(film);
     for (const auto& [width, height, runs] :
          {std::tuple(1u, 1u, 400u), std::tuple(1u, 4096u, 20u), std::tuple(17u, 13u, RUNS)}) {
         ExtremeCase c =
@@ -304,6 +295,16 @@ void addHistories(std::vector<ExtremeCase>& cases)
         if (height == 4096) c.truth = referenceWith(100);
         cases.push_back(c);
     }
+    // The film's sum of all frames, of reservoirs that stand for all of them.
+    ExtremeCase film =
+        known("10^6 frames accumulated", "the film's sum; M_c = 2^20 at rest", support::rectangleLight(8));
+    film.settings.width = film.settings.height = 8;
+    film.settings.maxConfidence = 1u << 20;
+    film.settings.spatial = 0;
+    film.settings.frames = 1000000;
+    film.settings.average = true;
+    film.runs = 2; // half an hour for each method
+    cases.push_back(film);
 }
 
 } // namespace

@@ -239,15 +239,18 @@ try {
     std::filesystem::path folder = "build/extremes";
     std::string device = "llvmpipe", only;
     bool quick = false;
+    uint32_t times = 1;
     app.add_option("-o,--output", folder, "Folder for extremes.csv, extremes.html, extremes.md (build/extremes)");
     app.add_option("--device", device, "Part of a device's name (llvmpipe)");
     app.add_option("--only", only, "Cases whose name contains this");
+    app.add_option("--times", times, "So many times the usual runs of each case (1)")->check(CLI::Range(1, 1000));
     app.add_flag("--quick", quick, "A few of the cases");
     CLI11_PARSE(app, argc, argv);
 
     std::filesystem::create_directories(folder);
     gpu::Device gpu = gpu::Device::create({.adapter = device});
-    const std::vector<ExtremeCase> cases = bench::extremeCases();
+    std::vector<ExtremeCase> cases = bench::extremeCases();
+    for (ExtremeCase& extreme : cases) extreme.runs *= times;
     const std::pair<const char*, passes::Method> methods[] = {
         {"pt", passes::Method::Pt}, {"restir-pt", passes::Method::RestirPt}, {"rgb-restir", passes::Method::RgbRestir}};
     std::vector<Row> rows;
