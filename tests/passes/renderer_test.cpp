@@ -248,6 +248,23 @@ TEST_F(RendererTest, RunsAreIndependentAndAlike)
     EXPECT_GT(*std::ranges::min_element(p), statistics::sidakLevel(1e-3, p.size()));
 }
 
+TEST_F(RendererTest, NeighborsLieWithinAThirtySixthOfTheHeightUnlessToldOtherwise)
+{
+    passes::Settings settings = settings_;
+    settings.method = passes::Method::RestirPt;
+    settings.shift = passes::Shift::Replay;
+    settings.width = 8;
+    settings.height = 108;
+    const auto at = [&](float radius) {
+        settings.spatialRadius = radius;
+        Renderer renderer = make(settings);
+        return frames(renderer, 2);
+    };
+    const Pixels byHeight = at(0);
+    EXPECT_EQ(byHeight, at(3));
+    EXPECT_NE(byHeight, at(4));
+}
+
 TEST_F(RendererTest, KnowsWherePointsWereSeenBefore)
 {
     Renderer renderer = make(settings_);
