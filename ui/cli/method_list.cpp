@@ -26,7 +26,8 @@ std::vector<std::string> split(const std::string& text, char separator)
 void applyWord(passes::Settings& settings, const std::string& word, bool first)
 {
     const size_t equals = word.find('=');
-    if (first && word.ends_with(".json"))
+    const std::vector<std::string> presets = presetNames();
+    if (first && (word.ends_with(".json") || std::ranges::find(presets, word) != presets.end()))
         applyPreset(settings, word);
     else if (first)
         passes::set(settings, "method", word);
@@ -77,9 +78,10 @@ std::vector<NamedMethod> readMethods(const std::string& list, const passes::Sett
 void MethodsOption::addTo(CLI::App& app, const std::string& initial)
 {
     list_ = initial;
-    app.add_option("--methods", list_,
-                   "What is compared, separated by commas: METHOD or a preset FILE.json, then :SHIFT or :NAME=VALUE as "
-                   "often as needed, as in rgb-restir:replay:spatial=0. Other settings are common to all.")
+    app.add_option(
+           "--methods", list_,
+           "What is compared, separated by commas: METHOD, or a preset or its FILE.json, then :SHIFT or :NAME=VALUE as "
+           "often as needed, as in rgb-restir:replay:spatial=0. Other settings are common to all.")
         ->option_text("LIST (" + initial + ")");
 }
 

@@ -158,7 +158,10 @@ int ConvergeCommand::run() const
         report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));
 
     const RaceStore store(directory, keyOf(report, limits), namesOf(report.methods));
-    if (resume) report.repeats = store.read(runs);
+    if (resume)
+        report.repeats = store.read(runs);
+    else
+        store.requireNew();
 
     passes::Race race(gpu, world, settingsOf(report.methods), cameraAt, limits,
                       [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
@@ -172,7 +175,6 @@ int ConvergeCommand::run() const
                                   .progress = [&](double done) { progress.show("Path tracing a reference", done, 1); },
                                   .stop = stop})
             : passes::References(reference, wanted);
-    if (!resume) store.clear();
 
     auto written = std::chrono::steady_clock::now();
     if (!report.moving || !report.repeats.empty()) references.after(limits.frames);

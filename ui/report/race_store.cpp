@@ -71,11 +71,12 @@ std::filesystem::path RaceStore::picture(size_t method) const
     return directory_ / "pictures" / fmt::format("{:02}-{}.exr", method, name);
 }
 
-void RaceStore::clear() const
+void RaceStore::requireNew() const
 {
-    std::error_code failure;
-    std::filesystem::remove_all(directory_ / "repeats", failure);
-    if (failure) throw Error("Cannot remove \"{}\": {}.", (directory_ / "repeats").string(), failure.message());
+    std::error_code ignored;
+    if (std::filesystem::exists(directory_ / "repeats", ignored))
+        throw Error("\"{}\" holds a measurement already: --resume goes on with it, or name another directory.",
+                    directory_.string());
 }
 
 void RaceStore::write(size_t index, const passes::Repeat& repeat) const

@@ -16,7 +16,7 @@ class RaceStore
     // `key` stands for everything that decides the figures; `names` of the methods name the pictures.
     RaceStore(std::filesystem::path directory, std::string key, std::vector<std::string> names);
 
-    void clear() const; // removes stored repeats
+    void requireNew() const; // Throws Error: there are repeats, which may have taken hours
     // Whole or not at all; the pictures of the first repeat beside it. Throws Error.
     void write(size_t index, const passes::Repeat& repeat) const;
     // Those that are there, without gaps, at most `limit`. Throws Error: of another key, or damaged.

@@ -50,6 +50,10 @@ TEST(MethodList, TakesPresets)
     EXPECT_EQ(methods[0].settings.method, passes::Method::RgbRestir);
     EXPECT_EQ(methods[0].settings.maxConfidence, 500u);
     EXPECT_EQ(methods[0].settings.spatial, 1u);
+    const auto named = ui::readMethods("pt,paper:max-confidence=8", {}); // the program's own
+    EXPECT_EQ(named[1].settings.method, passes::Method::RgbRestir);
+    EXPECT_EQ(named[1].settings.shift, passes::Shift::Replay);
+    EXPECT_EQ(named[1].settings.maxConfidence, 8u);
 }
 
 TEST(MethodList, RefusesWhatCannotBeCompared)
