@@ -121,7 +121,8 @@ uint32_t Renderer::maxRuns(const gpu::Limits& limits, const Settings& settings)
     const PixelBytes b = pixelBytes(settings);
     const uint64_t largest = std::max({b.surfaces, b.film, b.words, b.paths, b.shifted});
     const uint64_t pixels = uint64_t{settings.width} * settings.height;
-    return uint32_t(std::min<uint64_t>(limits.storageBindingBytes / largest / pixels, UINT32_MAX / pixels));
+    return uint32_t(std::min<uint64_t>(std::min(limits.storageBindingBytes, limits.tableBytes) / largest / pixels,
+                                       UINT32_MAX / pixels));
 }
 
 void Renderer::createBuffers()
@@ -130,9 +131,12 @@ void Renderer::createBuffers()
     stats_.bytesPerPixel = 0;
     const auto perPixel = [&](const char* label, uint64_t each, const char* setting = "--size") {
         stats_.bytesPerPixel += double(each);
-        // Whole rows of 16 bytes; one, too, where this method does not use what its stages declare.
-        return device_.createBuffer(
-            {.label = label, .size = std::max<uint64_t>((pixels * each + 15) / 16, 1) * 16, .setting = setting});
+        // Whole rows of 16 bytes; one, too, where this method does not use what its stages declare. Stages that only
+        // read take them as tables.
+        return device_.createBuffer({.label = label,
+                                     .size = std::max<uint64_t>((pixels * each + 15) / 16, 1) * 16,
+                                     .usage = gpu::Usage::Storage | gpu::Usage::Table,
+                                     .setting = setting});
     };
     frameUniform_ =
         device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
@@ -282,7 +286,7 @@ void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
     if (pathTrace_) pathTrace_->encode(encoder, pixels);
     if (canonical_) canonical_->encode(encoder, pixels);
     if (settings_.temporal && canonical_ && historyFrames_ > 0) temporal().encode(encoder, pixels);
-    if (spatialTrace_) spatialTrace_->encode(encoder, {pixels.x, pixels.y, settings_.spatial});
+    if (spatialTrace_) spatialTrace_->encode(encoder, {pixels.x * settings_.spatial, pixels.y});
     if (spatialGather_) spatialGather_->encode(encoder, pixels);
     accumulate_->encode(encoder, pixels);
 }

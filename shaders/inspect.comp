@@ -15,8 +15,8 @@ layout(set = SET_PASS, binding = 6, std430) writeonly buffer Inspections { Inspe
 #include "path/leaf.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
-LOAD_RESERVOIRS(History, history, historyPaths)
+LOAD_RESERVOIRS(Reservoirs, ELEMENT, reservoirs, reservoirPaths)
+LOAD_RESERVOIRS(History, ELEMENT, history, historyPaths)
 
 // Of reservoir c: spatial shifts that had a sample to shift, and those of them that carried nothing.
 uvec2 countSpatialShifts(uint pixel, uint c)
@@ -25,10 +25,11 @@ uvec2 countSpatialShifts(uint pixel, uint c)
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
         uint neighbor = neighbors[slot * pixelCount() + pixel];
         if (neighbor == NO_NEIGHBOR) continue;
-        vec4 words = shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel];
+        uint row = (slot * RESERVOIR_COUNT + c) * pixelCount();
         bool here = targetOf(c, loadReservoirsHead(neighbor, c).f) > 0.0;
         bool there = targetOf(c, loadReservoirsHead(pixel, c).f) > 0.0;
-        triedFailed += uvec2(here, here && targetOf(c, words.xyz) == 0.0) + uvec2(there, there && words.w == 0.0);
+        triedFailed += uvec2(here, here && targetOf(c, shifted[row + neighbor].xyz) == 0.0) +
+                       uvec2(there, there && targetOf(c, shifted[row + pixel].xyz) == 0.0);
     }
     return triedFailed;
 }

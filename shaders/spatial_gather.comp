@@ -4,19 +4,39 @@
 // next frame. With no neighbors it only resolves and hands on.
 #define STAGE STAGE_SPATIAL_GATHER
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Reservoirs { uvec4 reservoirs[]; };
-layout(set = SET_PASS, binding = 1, std430) readonly buffer ReservoirPaths { uvec4 reservoirPaths[]; };
-layout(set = SET_PASS, binding = 2, std430) readonly buffer Neighbors { uint neighbors[]; };
-layout(set = SET_PASS, binding = 3, std430) readonly buffer Shifted { vec4 shifted[]; };
+TABLE(SET_PASS, 0, Reservoirs);
+TABLE(SET_PASS, 1, ReservoirPaths);
+TABLE(SET_PASS, 2, Neighbors);
+TABLE(SET_PASS, 3, Shifted);
 layout(set = SET_PASS, binding = 4, std430) buffer History { uvec4 history[]; };
 layout(set = SET_PASS, binding = 5, std430) buffer HistoryPaths { uvec4 historyPaths[]; };
 layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
 
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+LOAD_RESERVOIRS(Reservoirs, FETCH, Reservoirs, ReservoirPaths)
 STORE_RESERVOIRS(History, history, historyPaths)
+
+uint chosenBy(uint pixel, uint slot)
+{
+    uint i = slot * pixelCount() + pixel;
+    return FETCH(Neighbors, i >> 2u)[i & 3u];
+}
+
+// NO_NEIGHBOR, too, where rounding made the two of a pair differ on whether they are alike.
+uint neighborOf(uint pixel, uint slot)
+{
+    uint neighbor = chosenBy(pixel, slot);
+    return neighbor != NO_NEIGHBOR && chosenBy(neighbor, slot) == pixel ? neighbor : NO_NEIGHBOR;
+}
+
+// f of the pixel's sample in the domain of its neighbor.
+vec3 shiftedFrom(uint pixel, uint slot, uint c)
+{
+    return uintBitsToFloat(FETCH(Shifted, (slot * RESERVOIR_COUNT + c) * pixelCount() + pixel).xyz);
+}
 
 // How often do the reservoirs of a pixel agree? What they share is shifted once.
 void countTrees(Reservoir r[MAX_RESERVOIRS])
@@ -45,7 +65,7 @@ void main()
     float confidence = float(loadReservoirsConfidence(pixel)); // c_i
     float neighborConfidence = 0.0;                            // M_n
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
-        uint neighbor = neighbors[slot * pixelCount() + pixel];
+        uint neighbor = neighborOf(pixel, slot);
         if (neighbor != NO_NEIGHBOR) neighborConfidence += float(loadReservoirsConfidence(neighbor));
     }
     // Pairwise MIS in complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j is the part of the own sample's
@@ -61,22 +81,23 @@ void main()
         kept[c] = 1.0;
     }
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
-        uint neighbor = neighbors[slot * pixelCount() + pixel];
+        uint neighbor = neighborOf(pixel, slot);
         if (neighbor == NO_NEIGHBOR) continue;
         float part = float(loadReservoirsConfidence(neighbor)) / (confidence + neighborConfidence); // c_j / M
         float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + slot).x);                    // one for all reservoirs
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             Reservoir other = loadReservoirsHead(neighbor, c);
-            vec4 words = shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel];
-            float a = ratio(targetOf(c, words.xyz), targetOf(c, other.f));
+            vec3 fHere = shiftedFrom(neighbor, slot, c);
+            float a = ratio(targetOf(c, fHere), targetOf(c, other.f));
+            float b = ratio(targetOf(c, shiftedFrom(pixel, slot, c)), targetOf(c, r[c].f));
             precise float weight = (other.weightSum + other.carry) * part * (neighborConfidence / confidence) *
                                    share(confidence, a, neighborConfidence); // w_j
-            precise float taken = part * share(neighborConfidence, words.w, confidence); // eps_j
+            precise float taken = part * share(neighborConfidence, b, confidence); // eps_j
             change[c] += weight - taken * r[c].weightSum;
             kept[c] -= taken;
             if (!consider(merged[c], weight, u)) continue;
             merged[c].chosen = other.chosen;
-            merged[c].f = words.xyz;
+            merged[c].f = fHere;
             lender[c] = neighbor;
         }
     }

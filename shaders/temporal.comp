@@ -3,17 +3,19 @@
 // Stage 2. Merges each pixel's canonical reservoirs with those of the pixel that saw the same point in the previous frame.
 #define STAGE STAGE_TEMPORAL
 #include "lib/frame.glsl"
+#include "lib/loop.glsl"
+#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 1, std430) readonly buffer History { uvec4 history[]; };
-layout(set = SET_PASS, binding = 2, std430) readonly buffer HistoryPaths { uvec4 historyPaths[]; };
+TABLE(SET_PASS, 1, History);
+TABLE(SET_PASS, 2, HistoryPaths);
 layout(set = SET_PASS, binding = 3, std430) buffer Reservoirs { uvec4 reservoirs[]; };
 layout(set = SET_PASS, binding = 4, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
 
 #include "integrand.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(History, history, historyPaths)
-LOAD_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+LOAD_RESERVOIRS(History, FETCH, History, HistoryPaths)
+LOAD_RESERVOIRS(Reservoirs, ELEMENT, reservoirs, reservoirPaths)
 STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
 
 void main()
@@ -40,19 +42,23 @@ void main()
         fHere[c] = old[c].f;
     }
     // SAME_VIEW: every pixel sees what it saw, all shifts are identities. Else a loop, so that the walk is compiled once.
-    for (uint way = 0u; !SAME_VIEW && way < 2u; ++way) {
-        bool backward = way != 0u;
-        vec3 f[MAX_RESERVOIRS];
-        Reservoir subjects[MAX_RESERVOIRS];
-        Domain to = there;
-        subjects = r;
-        if (!backward) {
-            to = here;
-            subjects = old;
-        }
-        shiftInto(to, subjects, f);
-        if (backward) fThere = f;
-        else fHere = f;
+    if (!SAME_VIEW) {
+        uint way = 0u;
+        LOOP_BEGIN(way < 2u)
+            bool backward = way != 0u;
+            vec3 f[MAX_RESERVOIRS];
+            Reservoir subjects[MAX_RESERVOIRS];
+            Domain to = there;
+            subjects = r;
+            if (!backward) {
+                to = here;
+                subjects = old;
+            }
+            shiftInto(to, subjects, f);
+            if (backward) fThere = f;
+            else fHere = f;
+            ++way;
+        LOOP_END(way < 2u)
     }
     uint confidence = loadReservoirsConfidence(pixel);
     float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs

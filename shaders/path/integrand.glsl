@@ -6,6 +6,7 @@
 
 #include "restir/reservoir.glsl"
 
+#include "lib/loop.glsl"
 #include "path/surfaces.glsl"
 #include "path/walk.glsl"
 
@@ -91,6 +92,7 @@ bool wants(uint leaf)
 
 bool goesOn(uint k)
 {
+    if (SHIFT_MAP == SHIFT_RECONNECTION) return false; // all is settled at x_1
     bool more = false;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         bool deeper = moving[c].joint == 0u ? moving[c].leaf > makeLeaf(k, BY_LIGHT) : moving[c].joint > k + 1u;
@@ -134,7 +136,7 @@ void join(Vertex x)
         r = moving[c].reconnection; // paths of one seed and one r have the same x_r
     }
     if (joining != 0u) {
-        bool infinite = r.triangle == NO_HIT;
+        bool infinite = HAS_ENVIRONMENT && r.triangle == NO_HIT;
         uint triangle = infinite ? 0u : r.triangle;
         vec3 d = infinite ? r.direction : hitPosition(triangle, r.barycentric) - x.s.position;
         float squared = dot(d, d);
@@ -150,8 +152,7 @@ void join(Vertex x)
         if (scatters && joinsLight(x.k + 1u, x.s, distance)) {
             ++joiningRays;
             uint alphaSeed = pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w;
-            isHidden = infinite ? hiddenAtInfinity(x.s, direction, alphaSeed)
-                                : hidden(x.s, at.position, at.geometricNormal, direction, alphaSeed);
+            isHidden = hidden(x.s, infinite, at.position, at.geometricNormal, direction, alphaSeed);
         }
         // x_r as a light, and as a surface that scatters on: the same for all paths, evaluated once.
         vec4 environment = loadEnvironment(direction);
@@ -201,8 +202,9 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         }
         left |= 1u << c;
     }
-    while (left != 0u) {
-        groupSeed = moving[findLSB(left)].seed;
+    LOOP_BEGIN(left != 0u)
+        for (uint c = RESERVOIR_COUNT; c-- > 0u;)
+            if ((left & (1u << c)) != 0u) groupSeed = moving[c].seed;
         uint group = 0u;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
             if ((left & (1u << c)) != 0u && moving[c].seed == groupSeed) group |= 1u << c;
@@ -218,7 +220,7 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
             f[c] = finiteOrCounted(arrived[c], STAGE);
             ++shiftOutcomes[outcome[c]];
         }
-    }
+    LOOP_END(left != 0u)
 }
 
 void countShifts()

@@ -4,13 +4,14 @@
 #define SHADERS_PATH_SURFACES_GLSL
 
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Surfaces { uvec4 surfaces[]; };
+TABLE(SET_PASS, 0, Surfaces);
 
 uvec4 seenBy(uint pixel, bool previous)
 {
     uint slice = previous ? 1u - frame.slice : frame.slice;
-    return surfaces[slice * frame.width * frame.height + pixel];
+    return FETCH(Surfaces, slice * frame.width * frame.height + pixel);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef SHADERS_PATH_WALK_GLSL
 #define SHADERS_PATH_WALK_GLSL
 
+#include "lib/loop.glsl"
 #include "path/leaf.glsl"
 #include "scene/bsdf.glsl"
 #include "scene/camera.glsl"
@@ -51,20 +52,16 @@ uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
     return randomBlock(seed, STREAM_PATH + 2u * k + purpose, uvec2(frame.key0, frame.key1));
 }
 
-// Does something stand between surface s and a target? Both ends are moved off their surfaces; the target has none where
-// its normal is 0.
-bool hidden(Surface s, vec3 target, vec3 targetNormal, vec3 direction, uint alphaSeed)
+// Does something stand between surface s and a target, or anywhere in that direction? Both ends are moved off their
+// surfaces; the target has none where its normal is 0.
+bool hidden(Surface s, bool infinite, vec3 target, vec3 targetNormal, vec3 direction, uint alphaSeed)
 {
     vec3 origin = offsetOrigin(s.position, s.geometricNormal, direction);
     vec3 end = targetNormal == vec3(0.0) ? target : offsetOrigin(target, targetNormal, -direction);
     vec3 d = end - origin;
     float distance = length(d);
-    return distance > 0.0 && occluded(Ray(origin, d / distance, distance), alphaSeed);
-}
-
-bool hiddenAtInfinity(Surface s, vec3 direction, uint alphaSeed)
-{
-    return occluded(Ray(offsetOrigin(s.position, s.geometricNormal, direction), direction, RAY_MAX), alphaSeed);
+    Ray ray = infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance);
+    return ray.tMax > 0.0 && occluded(ray, alphaSeed); // traversal is compiled once
 }
 
 // Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight times f L / p_N, without 0/0.
@@ -83,19 +80,20 @@ void emitByLight(Vertex x, PathSeed seed)
     vec3 contribution = x.throughput * e.weighted;
     if (contribution == vec3(0.0)) return;
     ++shadowRays;
-    bool isHidden = light.infinite ? hiddenAtInfinity(x.s, light.direction, random.w)
-                                   : hidden(x.s, light.target, light.normal, light.direction, random.w);
-    if (!isHidden) emit(makeLeaf(x.k, BY_LIGHT), contribution, e);
+    if (!hidden(x.s, light.infinite, light.target, light.normal, light.direction, random.w))
+        emit(makeLeaf(x.k, BY_LIGHT), contribution, e);
 }
 
 // Surface s is x_1, seen from direction wo.
 void walk(Surface s, vec3 wo, PathSeed seed)
 {
+    if (MAX_BOUNCES == 0u) return;
     trunk = NO_TRUNK;
     Vertex x;
     x.s = s;
     x.throughput = vec3(1.0);
-    for (x.k = 1u; x.k <= MAX_BOUNCES; ++x.k) {
+    x.k = 1u;
+    LOOP_BEGIN(x.k <= MAX_BOUNCES)
         x.bsdf = makeBsdf(x.s, wo);
         if (absorbs(x.bsdf) || !visit(x)) return;
         if (wants(makeLeaf(x.k, BY_LIGHT))) emitByLight(x, seed);
@@ -138,7 +136,8 @@ void walk(Surface s, vec3 wo, PathSeed seed)
         if (to.hit.triangle == NO_HIT) return;
         joinTrunk(x, to, next);
         x.s = next;
-    }
+        ++x.k;
+    LOOP_END(x.k <= MAX_BOUNCES)
 }
 
 #endif

@@ -5,6 +5,7 @@
 #define SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 #include "restir/reservoir.glsl"
 
 const uint WORD_ROWS = 2u;
@@ -15,16 +16,18 @@ uint wordRow(uint pixel, uint c, uint row) { return (WORD_ROWS * c + row) * pixe
 uint pathRow(uint pixel, uint c, uint row) { return (PATH_ROWS * c + row) * pixelCount() + pixel; }
 uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount() + (pixel >> 2u); }
 
-// LOAD_RESERVOIRS defines, over the buffers WORDS and PATHS: load<SET>Head and load<SET>Path, one reservoir without and its
+#define ELEMENT(BUFFER, INDEX) BUFFER[INDEX]
+
+// LOAD_RESERVOIRS defines, over what READ(WORDS, row) and READ(PATHS, row) read (FETCH: tables; ELEMENT: buffers): load<SET>Head and load<SET>Path, one reservoir without and its
 // path; load<SET>, all of a pixel's; load<SET>Confidence. STORE_RESERVOIRS: store<SET> and store<SET>Confidence. Arrays have
 // MAX_RESERVOIRS elements, of which RESERVOIR_COUNT are used: glslang 12 can neither copy nor initialize arrays sized by a
 // specialisation constant.
-#define LOAD_RESERVOIRS(SET, WORDS, PATHS)                                                                             \
+#define LOAD_RESERVOIRS(SET, READ, WORDS, PATHS)                                                                       \
     Reservoir load##SET##Head(uint pixel, uint c)                                                                      \
     {                                                                                                                  \
         Reservoir r = EMPTY;                                                                                           \
-        uvec4 a = WORDS[wordRow(pixel, c, 0u)];                                                                        \
-        uvec4 b = WORDS[wordRow(pixel, c, 1u)];                                                                        \
+        uvec4 a = READ(WORDS, wordRow(pixel, c, 0u));                                                                  \
+        uvec4 b = READ(WORDS, wordRow(pixel, c, 1u));                                                                  \
         r.chosen.seed = PathSeed(a.x, a.y);                                                                            \
         r.chosen.leaf = a.z & 0xffffu;                                                                                 \
         r.chosen.joint = a.z >> 16u;                                                                                   \
@@ -36,10 +39,10 @@ uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount
     Reconnection load##SET##Path(uint pixel, uint c)                                                                   \
     {                                                                                                                  \
         if (SHIFT_MAP == SHIFT_REPLAY) return NO_SAMPLE.reconnection;                                                  \
-        uvec4 vertex = PATHS[pathRow(pixel, c, 0u)];                                                                   \
+        uvec4 vertex = READ(PATHS, pathRow(pixel, c, 0u));                                                             \
         return Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w),                           \
-                            uintBitsToFloat(PATHS[pathRow(pixel, c, 2u)].xyz),                                         \
-                            uintBitsToFloat(PATHS[pathRow(pixel, c, 1u)].xyz));                                        \
+                            uintBitsToFloat(READ(PATHS, pathRow(pixel, c, 2u)).xyz),                                   \
+                            uintBitsToFloat(READ(PATHS, pathRow(pixel, c, 1u)).xyz));                                  \
     }                                                                                                                  \
     void load##SET(uint pixel, out Reservoir r[MAX_RESERVOIRS])                                                        \
     {                                                                                                                  \
@@ -48,7 +51,7 @@ uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount
             r[c].chosen.reconnection = load##SET##Path(pixel, c);                                                      \
         }                                                                                                              \
     }                                                                                                                  \
-    uint load##SET##Confidence(uint pixel) { return WORDS[confidenceRow(pixel)][pixel & 3u]; }
+    uint load##SET##Confidence(uint pixel) { return READ(WORDS, confidenceRow(pixel))[pixel & 3u]; }
 
 #define STORE_RESERVOIRS(SET, WORDS, PATHS)                                                                            \
     void store##SET(uint pixel, Reservoir r[MAX_RESERVOIRS])                                                           \

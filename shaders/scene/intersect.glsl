@@ -3,21 +3,12 @@
 // The includer declares the tables Nodes and Triangles, the constant bool HAS_ALPHA and
 // bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of flagged triangles only.
 //
-// Written for drivers that run 8 lanes under masks (lavapipe): an `if` skips nothing and every loop runs its body at
-// least once, hence loops that test at their end, stores to the stack without conditions, and planes picked by the
-// ray's signs. From a loop that lanes leave at different times, Mesa 22.3 brings out right only variables that each round
-// makes from what they were before it. SwiftShader, which reads tables from storage buffers, compiles a nest of loops
-// that test at their end wrongly: there the inner ones test at their start (tests/bench/LOG.md).
-#ifdef TABLES_IN_STORAGE
-#define LOOP_BEGIN(CONDITION) while (CONDITION) {
-#define LOOP_END(CONDITION) }
-#else
-#define LOOP_BEGIN(CONDITION) do {
-#define LOOP_END(CONDITION) } while (CONDITION);
-#endif
+// Written for drivers that run 8 lanes under masks (lib/loop.glsl): hence also stores to the stack without conditions, and
+// planes picked by the ray's signs.
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
+#include "lib/loop.glsl"
 #include "lib/table.glsl"
 #include "shared/bvh.h"
 

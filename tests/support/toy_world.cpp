@@ -125,7 +125,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     constants_ = passes::constants(variant);
 
     const uint64_t pixels = uint64_t{runs} * SIZE * SIZE, count = estimator.target.size();
-    const auto add = [&](const char* name, uint64_t size, gpu::Usage usage = gpu::Usage::Storage) {
+    const auto add = [&](const char* name, uint64_t size, gpu::Usage usage = gpu::Usage::Storage | gpu::Usage::Table) {
         buffers_.emplace(name, device.createBuffer({.label = name, .size = size, .usage = usage}));
     };
     add("Frame", sizeof(shared::FrameUniform), gpu::Usage::Uniform);
@@ -178,11 +178,11 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
         device_.queue().writeValue(buffers_.at("Frame"), frame);
         gpu::CommandEncoder encoder = device_.createCommandEncoder("frame");
         if (frame.frame == 0) encoder.clear(buffers_.at("Counters"));
-        const auto encode = [&](const char* name, uint32_t slots = 1, bool sameView = false) {
+        const auto encode = [&](const char* name, uint32_t perPixel = 1, bool sameView = false) {
             Stage& s = stage(name, sameView);
             encoder.dispatch({.pipeline = &s.pipeline,
                               .groups = {&s.frame, nullptr, &s.own},
-                              .threads = {SIZE, SIZE * runs_, slots}});
+                              .threads = {SIZE * perPixel, SIZE * runs_}});
         };
         encode("canonical");
         if (c.reuse != Reuse::Spatial && frame.frame > 0) encode("temporal", 1, !c.moves && elides);

@@ -40,6 +40,7 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"frames", report.frames},
             {"partial", report.partial},
             {"wall_seconds", report.wallSeconds},
+            {"first_pixel_seconds", report.firstPixelSeconds},
             {"load_seconds", report.loadSeconds + stats.tablesSeconds},
             {"bvh_seconds", stats.bvhSeconds},
             {"compile_seconds", stats.compileSeconds},

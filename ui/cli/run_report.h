@@ -21,10 +21,11 @@ struct RunReport {
     passes::Settings settings;
     std::vector<std::pair<std::string, std::string>> extra; // what else decides the pixels: the camera's motion
     gpu::Adapter adapter;
-    uint64_t frames = 0;    // done
-    bool partial = false;   // stopped before the end
-    double wallSeconds = 0; // of rendering alone
-    double loadSeconds = 0; // of reading the scene and making its tables, without the BVH
+    uint64_t frames = 0;          // done
+    bool partial = false;         // stopped before the end
+    double wallSeconds = 0;       // of rendering alone
+    double firstPixelSeconds = 0; // from the command's start to the end of the first frame
+    double loadSeconds = 0;       // of reading the scene and making its tables, without the BVH
     passes::RenderStats stats;
     glm::dvec3 meanRgb = {0, 0, 0};
 };

@@ -39,7 +39,8 @@ struct RenderCommand {
 };
 
 // Until the settings say stop, or Ctrl-C does.
-void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, Progress& progress, RunReport& report)
+void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, Progress& progress, RunReport& report,
+                  std::chrono::steady_clock::time_point commandStart)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
@@ -51,6 +52,10 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
         if (cameraAt) renderer.setCamera(cameraAt(report.frames));
         renderer.renderFrame();
         report.frames = renderer.frameCount();
+        if (report.frames == 1) {
+            renderer.wait();
+            report.firstPixelSeconds = secondsSince(commandStart);
+        }
         elapsed = secondsSince(start);
         if (byTime)
             progress.show("Rendering", elapsed, wanted.seconds);
@@ -65,6 +70,7 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
 
 int RenderCommand::run() const
 {
+    const auto commandStart = std::chrono::steady_clock::now();
     RunReport report{.scene = scene, .settings = settings.read(), .extra = motion.toText()};
     motion.adjust(report.settings, settings);
     requireWritable(output, {".exr", ".png"});
@@ -80,7 +86,7 @@ int RenderCommand::run() const
     passes::Renderer renderer(gpu, world, report.settings,
                               [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
 
-    renderFrames(renderer, cameraAt, progress, report);
+    renderFrames(renderer, cameraAt, progress, report, commandStart);
     const image::Image picture = renderer.readColor();
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
