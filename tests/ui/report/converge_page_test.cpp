@@ -178,8 +178,8 @@ TEST(RaceStore, GivesBackWhatWasFinished)
     }
     EXPECT_EQ(image::read(store.picture(1)).image.pixels, repeat.finals[1].pixels);
     EXPECT_EQ(store.picture(1).filename(), "01-rgb-restir_spatial_0.exr");
-    store.clear();
-    EXPECT_TRUE(store.read(9).empty());
+    EXPECT_THROW(store.requireNew(), Error);
+    EXPECT_NO_THROW(ui::RaceStore(directory / "elsewhere", "key", {"pt"}).requireNew());
 }
 
 TEST(RaceStore, RefusesOtherSettingsAndDamage)
