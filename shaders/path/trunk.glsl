@@ -56,13 +56,22 @@ bool joins(uint r, Surface before, Surface at, float distance)
     return joinsLight(r, before, distance) && scattersWidely(at);
 }
 
+// p_k of the direction between the vertices: a shift knows no other.
+float alignedPdf(Vertex x, Segment to)
+{
+    if (SHIFT_MAP == SHIFT_REPLAY || to.scatter.dirac) return to.scatter.pdf;
+    float pdf;
+    evaluate(x.bsdf, to.direction * x.bsdf.frame, to.direction, pdf);
+    return pdf > 0.0 ? pdf : to.scatter.pdf;
+}
+
 void joinTrunk(Vertex before, Segment to, Surface at)
 {
     if (trunk.joint != 0u || !joins(before.k + 1u, before.s, at, to.distance)) return;
     trunk.joint = before.k + 1u;
     trunk.triangle = to.hit.triangle;
     trunk.barycentric = to.hit.barycentric;
-    trunk.arrival = to.scatter.pdf * to.geometry;
+    trunk.arrival = to.arrival;
 }
 
 void departTrunk(Vertex x, Scatter scatter)
@@ -78,8 +87,7 @@ void departTrunk(Vertex x, Scatter scatter)
 
 void offerLight(Vertex x, Segment to)
 {
-    lightJoint = LightJoint(trunk.joint == 0u && joinsLight(x.k + 1u, x.s, to.distance), to.hit,
-                            to.scatter.pdf * to.geometry);
+    lightJoint = LightJoint(trunk.joint == 0u && joinsLight(x.k + 1u, x.s, to.distance), to.hit, to.arrival);
 }
 
 // The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).

@@ -12,6 +12,10 @@
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
 
+// A ray begins a little off its surface. From here on (scaled) a path follows the line between its vertices instead, as
+// shifts and light samples do: at grazing angles it would show.
+const float ALIGNED_DISTANCE = 1.0 / 1024.0;
+
 // x_k, about to scatter.
 struct Vertex {
     uint k;
@@ -24,8 +28,9 @@ struct Vertex {
 struct Segment {
     Scatter scatter;
     Hit hit;
+    vec3 direction; // between the vertices
     float distance; // scaled; RAY_MAX: the environment
-    float geometry; // |cos| / distance^2 at x_(k+1): area over solid angle; 1 for the environment
+    float arrival;  // p_k G: density over area at x_(k+1); over solid angle for the environment
 };
 
 // The last step of a path, from x_k to light.
@@ -105,7 +110,8 @@ void walk(Surface s, vec3 wo, PathSeed seed)
         x.throughput *= to.scatter.weight;
         if (x.throughput == vec3(0.0)) return;
         ++tracedRays;
-        wo = -to.scatter.direction;
+        to.direction = to.scatter.direction;
+        wo = -to.direction;
         to.hit = closestHit(Ray(offsetOrigin(x.s.position, x.s.geometricNormal, to.scatter.direction), to.scatter.direction, RAY_MAX),
                             random.w);
         departTrunk(x, to.scatter);
@@ -119,14 +125,16 @@ void walk(Surface s, vec3 wo, PathSeed seed)
             e.radiance = environment.rgb;
             e.lightPdf = environmentPdf(environment);
             to.distance = RAY_MAX;
-            to.geometry = 1.0;
+            to.arrival = to.scatter.pdf;
         } else {
             next = loadSurface(to.hit.triangle, to.hit.barycentric, wo);
             vec3 d = next.position - x.s.position;
             to.distance = length(d);
-            to.geometry = abs(dot(next.geometricNormal, to.scatter.direction)) / dot(d, d);
+            if (to.distance > ALIGNED_DISTANCE) to.direction = d / to.distance;
+            wo = -to.direction;
+            to.arrival = alignedPdf(x, to) * abs(dot(next.geometricNormal, to.direction)) / dot(d, d);
             e.radiance = next.emission;
-            e.lightPdf = lightPdf(next, x.s.position, wo);
+            e.lightPdf = lightPdf(next, x.s.position, to.direction);
         }
         if (e.radiance != vec3(0.0)) {
             e.weighted = e.radiance * (to.scatter.dirac ? 1.0 : to.scatter.pdf / (to.scatter.pdf + e.lightPdf));

@@ -133,8 +133,7 @@ TEST_F(RestirTest, RgbIsTheRunningMeanOfThePathTracer)
 }
 
 // The same of hybrid shifts that are really made, each of them home: identities, and defined, on diffuse, glossy and
-// glass vertices. At a grazing joint the density is evaluated for a slightly other direction: up to 1e-3 in single
-// pixels.
+// glass vertices.
 TEST_F(RestirTest, HybridShiftsHomeAreIdentities)
 {
     constexpr int FRAMES = 8;

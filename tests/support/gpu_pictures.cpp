@@ -1,5 +1,8 @@
 #include "tests/support/gpu_pictures.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <gtest/gtest.h>
 
 namespace support
@@ -15,26 +18,15 @@ void expectFinite(passes::Renderer& renderer)
 
 } // namespace
 
-PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                              uint32_t frames, scene::FeatureSet features)
-{
-    passes::Renderer renderer(device, scene, settings, {}, features);
-    PictureRuns runs;
-    for (uint32_t i = 0; i < frames; ++i) {
-        renderer.renderFrame();
-        runs.add(renderer.readFrame());
-    }
-    expectFinite(renderer);
-    return runs.estimates();
-}
-
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                             uint32_t runs, const passes::CameraAt& cameraAt)
 {
+    constexpr uint32_t MOST = 256; // runs below each other in one picture: small dispatches cost more than they do
+    const uint32_t batches = (runs + MOST - 1) / MOST, batch = (runs + batches - 1) / batches;
     PictureRuns result;
-    passes::Renderer renderer(device, scene, settings);
+    passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, batch);
     passes::Settings own = settings;
-    for (uint32_t run = 0; run < runs; ++run, ++own.seed) {
+    for (uint32_t run = 0; run < runs; ++own.seed) {
         if (cameraAt) renderer.setCamera(cameraAt(0));
         renderer.apply(own);
         renderer.reset();
@@ -42,10 +34,23 @@ PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, cons
             if (cameraAt) renderer.setCamera(cameraAt(frame));
             renderer.renderFrame();
         }
-        result.add(renderer.readColor());
+        const image::Image all = renderer.readColor();
+        image::Image one{.width = settings.width, .height = settings.height};
+        const auto pixels = std::ptrdiff_t(size_t{one.width} * one.height);
+        for (uint32_t i = 0; i < batch && run < runs; ++i, ++run) {
+            one.pixels.assign(all.pixels.begin() + i * pixels, all.pixels.begin() + (i + 1) * pixels);
+            result.add(one);
+        }
         expectFinite(renderer);
     }
     return result.estimates();
+}
+
+PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, passes::Settings settings,
+                              uint32_t frames)
+{
+    settings.frames = 1;
+    return renderRuns(device, scene, settings, frames);
 }
 
 } // namespace support

@@ -10,14 +10,13 @@
 namespace support
 {
 
-// `frames` frames of one renderer, each taken for an independent run: of the path tracer they are.
-// A value that is not finite fails the test.
-PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                              uint32_t frames, scene::FeatureSet features = scene::FeatureSet::Needed);
-
-// `runs` runs with seeds of their own, each read after settings.frames frames (their mean, or with !settings.average
-// the last): for methods whose frames depend on each other. The camera moves when `cameraAt` is given.
+// Independent runs, each read after settings.frames frames (their mean, or with !settings.average the last). The camera
+// moves when `cameraAt` is given. A value that is not finite fails the test.
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
                             uint32_t runs, const passes::CameraAt& cameraAt = {});
+
+// Of the path tracer, whose single frames are runs.
+PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, passes::Settings settings,
+                              uint32_t frames);
 
 } // namespace support

@@ -353,6 +353,31 @@ Scene ballOf(const Material& material)
     return scene;
 }
 
+Scene cabinet()
+{
+    Scene scene = ballOf({.baseColor = COPPER, .metallic = 0, .roughness = 0.5f});
+    const auto quad = [&](const Material& material, vec3 corner, vec3 u, vec3 v) {
+        scene::addQuad(scene, scene::addMaterial(scene, material), corner, u, v);
+    };
+    quad(scene::diffuse("back", {0.4f, 0.6f, 0.7f}), {-2, 0, -1.4f}, {4, 0, 0}, {0, 2.6f, 0});
+    quad({.baseColor = COPPER, .metallic = 1, .roughness = 0.3f}, {-1.6f, 0, 1}, {0.3f, 0, -2}, {0, 1.6f, 0});
+    quad({.baseColor = {0.3f, 0.8f, 0.5f, 1}, .metallic = 0, .roughness = 0.1f, .ior = 2}, {1.3f, 0, -1}, {0.3f, 0, 2},
+         {0, 1.2f, 0.1f});
+    quad({.baseColor = {0.9f, 0.9f, 0.9f, 1}, .metallic = 1, .roughness = 0}, {0.9f, 0.01f, 1.2f}, {0.7f, 0, 0},
+         {0, 0.5f, -0.5f});
+    quad({.baseColor = COPPER, .metallic = 0.2f, .roughness = 0.5f, .specular = 0.9f, .transmission = 0.7f},
+         {-1.1f, 0.05f, 1.1f}, {0.9f, 0, 0.2f}, {0, 1, -0.1f});
+    scene::addSphere(scene,
+                     scene::addMaterial(scene, {.baseColor = {0.9f, 0.95f, 0.7f, 1},
+                                                .metallic = 0,
+                                                .roughness = 0.6f,
+                                                .transmission = 0.9f,
+                                                .thin = false}),
+                     {0.55f, 0.45f, 1}, 0.4f, 1);
+    scene.lights = pointLight().lights;
+    return scene;
+}
+
 passes::Settings TestScene::settings() const
 {
     passes::Settings result;

@@ -25,4 +25,8 @@ void PrintTo(const TestScene& scene, std::ostream* os);
 // A ball (an icosahedron with smooth normals) of the material on a floor, under a lamp and a sky of several colours.
 scene::Scene ballOf(const scene::Material& material);
 
+// Diffuse, glossy, polished, mirroring, frosted and refracting things close together, under a lamp, a point light and a
+// sky.
+scene::Scene cabinet();
+
 } // namespace support

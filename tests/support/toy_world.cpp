@@ -160,9 +160,10 @@ ToyRenderer::Stage& ToyRenderer::stage(const std::string& name, bool sameView)
 
 std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
 {
+    const uint32_t runs = std::min(c.runs, runs_);
     shared::FrameUniform frame = {};
     frame.width = SIZE;
-    frame.height = SIZE * runs_;
+    frame.height = SIZE * runs;
     frame.runHeight = SIZE;
     frame.key0 = uint32_t(c.seed * 0x9e3779b9u);
     frame.key1 = uint32_t(c.seed >> 32) ^ 0x5bd1e995u;
@@ -182,7 +183,7 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
             Stage& s = stage(name, sameView);
             encoder.dispatch({.pipeline = &s.pipeline,
                               .groups = {&s.frame, nullptr, &s.own},
-                              .threads = {SIZE * perPixel, SIZE * runs_}});
+                              .threads = {SIZE * perPixel, SIZE * runs}});
         };
         encode("canonical");
         if (c.reuse != Reuse::Spatial && frame.frame > 0) encode("temporal", 1, !c.moves && elides);
@@ -195,8 +196,8 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
 
     const std::vector<glm::vec4> color = device_.queue().readAs<glm::vec4>(buffers_.at("Color"));
     constexpr size_t PIXELS = SIZE * SIZE;
-    std::vector<image::Image> pictures(runs_ / shared::TOY_GROUP, {SIZE, SIZE, std::vector<glm::vec3>(PIXELS)});
-    for (size_t i = 0; i < color.size(); ++i)
+    std::vector<image::Image> pictures(runs / shared::TOY_GROUP, {SIZE, SIZE, std::vector<glm::vec3>(PIXELS)});
+    for (size_t i = 0; i < runs * PIXELS; ++i)
         pictures[i / PIXELS / shared::TOY_GROUP].pixels[i % PIXELS] +=
             (glm::vec3(color[i]) - EMISSION) / float(shared::TOY_GROUP);
     return pictures;

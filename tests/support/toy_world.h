@@ -26,7 +26,8 @@ struct ToyCase {
     Reuse reuse = Reuse::Both;
     bool moves = false; // domains change from frame to frame, and are seen by other pixels
     uint32_t maxConfidence = 1;
-    uint32_t frames = 6; // rendered; the last one counts
+    uint32_t frames = 6;        // rendered; the last one counts
+    uint32_t runs = UINT32_MAX; // of the renderer's, at most; a multiple of shared::TOY_GROUP
     uint64_t seed = 1;
 
     std::string name() const;

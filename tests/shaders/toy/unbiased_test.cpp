@@ -2,8 +2,10 @@
 // are the integrals, whatever the estimator, the shift, the reuse, the motion and M_c.
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
+#include "tests/shaders/toy/toy.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/toy_world.h"
 
@@ -44,11 +46,19 @@ void PrintTo(const Row& row, std::ostream* os)
     *os << row.name();
 }
 
+bool asksAll()
+{
+    return std::getenv("TRICHROME_TEST_MATRIX") != nullptr;
+}
+
+// Without the matrix: every estimator with hybrid shifts, which replay and reconnect, and every shift with one of them.
 std::vector<Row> rows()
 {
     std::vector<Row> list;
     for (const passes::Estimator& estimator : allEstimators())
-        for (const Shift shift : SHIFTS) list.push_back({estimator, shift});
+        for (const Shift shift : SHIFTS)
+            if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
+                list.push_back({estimator, shift});
     return list;
 }
 
@@ -63,16 +73,22 @@ struct Plan {
     double margin = 0.1;
 };
 
-Plan plan()
+Plan plan(const passes::Estimator& estimator)
 {
     using enum Reuse;
-    if (std::getenv("TRICHROME_TEST_MATRIX") == nullptr)
-        return {.cases = {{Temporal, true, 8}, {Spatial, true, 1}, {Both, false, 4096}, {Both, true, 8}}};
-    Plan all{.cases = {}, .runs = 2048, .margin = 0.01};
+    if (!asksAll()) return {.cases = {{Temporal, true, 8}, {Spatial, true, 1}, {Both, false, 4096}, {Both, true, 8}}};
+    // Few reservoirs leave channels to chance, which takes more runs: these fill lavapipe's largest binding. Without
+    // reuse in space a quarter of them tells as much.
+    const auto multiple = [](size_t runs) { return uint32_t(runs / shared::TOY_GROUP * shared::TOY_GROUP); };
+    const uint32_t runs = multiple(8192 / estimator.target.size()), few = multiple(runs / 4);
+    Plan all{.cases = {}, .runs = runs, .margin = 0.01};
     for (const bool moves : {false, true}) {
-        all.cases.push_back({Spatial, moves, 1}); // M_c limits history alone
-        for (const Reuse reuse : {Temporal, Both})
-            for (const uint32_t limit : {1u, 8u, 64u, 4096u}) all.cases.push_back({reuse, moves, limit});
+        all.cases.push_back({Spatial, moves, 1, 2, few}); // M_c limits history alone
+        // So many frames that M_c limits the last ones' history. (4096 frames in time alone are not reached: no limit.)
+        for (const auto& [limit, frames] : {std::pair(1u, 6u), {8u, 12u}, {64u, 72u}, {4096u, 12u}})
+            all.cases.push_back({Temporal, moves, limit, frames, few});
+        for (const auto& [limit, frames] : {std::pair(1u, 6u), {8u, 6u}, {64u, 6u}, {4096u, 9u}})
+            all.cases.push_back({Both, moves, limit, frames});
     }
     return all;
 }
@@ -81,12 +97,13 @@ TEST_P(ToyIntegrals, AreTheMeans)
 {
     if (isSlow(device()) && GetParam().name() != "rgbrestirHybrid")
         GTEST_SKIP() << "SKIPPED ON SwiftShader: rgb-restir with hybrid shifts stands for all";
-    const Plan asked = plan();
+    const Plan asked = plan(GetParam().estimator);
     const double level = 1e-3 / double(2 * rows().size() * asked.cases.size()); // two tests each, 1e-3 for all of them
     ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs);
     for (const ToyCase& c : asked.cases) {
         const TileVerdict verdict = renderer.verdict(c, level, asked.margin);
-        EXPECT_TRUE(verdict.passes) << c.name() << "\n" << verdict.summary;
+        EXPECT_TRUE(verdict.passes) << c.name();
+        std::printf("%s:\n%s\n", c.name().c_str(), verdict.summary.c_str());
     }
 }
 
