@@ -1,7 +1,7 @@
 #include "passes/settings.h"
 
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
+#include "engine/base/fingerprint.h"
 
 #include <array>
 #include <charconv>
@@ -223,7 +223,7 @@ void set(Settings& settings, std::string_view name, std::string_view text)
 {
     bool found = false;
     visitSettings(settings, [&]<class T>(const Knob& knob, T&& field) {
-        if (name != knob.name) return;
+        if (item.key() != knob.name) return;
         found = true;
         fromText(knob, std::forward<T>(field), text);
     });
@@ -247,21 +247,22 @@ nlohmann::ordered_json toJson(const Settings& settings)
 void apply(Settings& settings, const nlohmann::ordered_json& preset)
 {
     if (!preset.is_object()) throw Error("A preset is an object {{\"name\": value, ...}}, not {}.", preset.type_name());
-    for (const auto& [name, value] : preset.items()) {
+    for (const auto& item : preset.items()) { // clang 14 captures no structured bindings
         bool found = false;
         visitSettings(settings, [&]<class T>(const Knob& knob, T&& field) {
             if (name != knob.name) return;
             found = true;
-            fromJson(knob, std::forward<T>(field), value);
+            fromJson(knob, std::forward<T>(field), item.value());
         });
-        if (!found) throw unknown(name);
+        if (!found) throw unknown(item.key());
     }
 }
 
 std::string hash(const Settings& settings)
 {
-    uint64_t state = FNV_START; // names and values are set apart by bytes that no value contains
-    for (const auto& [name, value] : toText(settings)) state = fnv1a(value, fnv1a(name, state));
+    uint64_t state = 0;
+    for (const auto& [name, value] : toText(settings))
+        state = fingerprint(std::string_view(value), fingerprint(std::string_view(name), state));
     return fmt::format("{:016x}", state);
 }
 
