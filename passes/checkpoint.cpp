@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/fingerprint.h"
+#include "engine/base/json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,12 +33,6 @@ struct Header {
 static_assert(sizeof(Header) == 32, "no padding: every byte of the file is checked");
 
 using CameraValues = std::array<float, sizeof(shared::CameraUniform) / sizeof(float)>;
-
-// Bytes that are no UTF-8 are no JSON either.
-std::string dump(const Json& json)
-{
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 template <class... Args>
 Error refusal(const std::string& file, fmt::format_string<Args...> format, Args&&... args)
@@ -110,13 +105,13 @@ void write(const std::filesystem::path& file, const Checkpoint& checkpoint)
     for (const auto& [name, value] : checkpoint.identity) identity[name] = value;
     for (const auto& [name, bytes] : state.buffers)
         buffers.push_back({{"name", name}, {"bytes", bytes.size()}, {"fingerprint", fingerprint(bytes)}});
-    const std::string text = dump({{"identity", identity},
-                                   {"seconds", checkpoint.seconds},
-                                   {"frames", state.frames},
-                                   {"history-frames", state.historyFrames},
-                                   {"camera", toJson(state.camera)},
-                                   {"previous-camera", toJson(state.previousCamera)},
-                                   {"buffers", buffers}});
+    const std::string text = jsonText({{"identity", identity},
+                                       {"seconds", checkpoint.seconds},
+                                       {"frames", state.frames},
+                                       {"history-frames", state.historyFrames},
+                                       {"camera", toJson(state.camera)},
+                                       {"previous-camera", toJson(state.previousCamera)},
+                                       {"buffers", buffers}});
     Header header{.textBytes = uint32_t(text.size()), .fingerprint = fingerprint(std::as_bytes(std::span(text)))};
     std::vector<Bytes> pieces = {std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(text))};
     for (const auto& [name, bytes] : state.buffers) {
@@ -141,8 +136,7 @@ Checkpoint parseCheckpoint(std::span<const std::byte> bytes, const std::string& 
                       bytes.size(), textBytes, header.dataBytes);
     const Bytes text = bytes.first(textBytes);
     if (header.fingerprint != fingerprint(text)) throw refusal(file, "its description is damaged");
-    const Json json = Json::parse(reinterpret_cast<const char*>(text.data()),
-                                  reinterpret_cast<const char*>(text.data()) + text.size(), nullptr, false);
+    const Json json = whileDoing(fmt::format("reading \"{}\"", file), [&] { return parseJson(text); });
 
     const Reader reader(file, json);
     Checkpoint checkpoint{.identity = reader.identity("identity"),
@@ -176,13 +170,13 @@ void requireSame(const Checkpoint& checkpoint, const Identity& now, const std::s
     const Identity& then = checkpoint.identity;
     for (const auto& [name, value] : now) {
         const auto found = std::ranges::find(then, name, &Identity::value_type::first);
-        if (found == then.end()) throw refusal(file, "it was rendered without {} {}", name, dump(value));
-        if (dump(found->second) != dump(value))
-            throw refusal(file, "its {} is {}, not {}", name, dump(found->second), dump(value));
+        if (found == then.end()) throw refusal(file, "it was rendered without {} {}", name, jsonText(value));
+        if (jsonText(found->second) != jsonText(value))
+            throw refusal(file, "its {} is {}, not {}", name, jsonText(found->second), jsonText(value));
     }
     for (const auto& [name, value] : then)
         if (std::ranges::find(now, name, &Identity::value_type::first) == now.end())
-            throw refusal(file, "it was rendered with {} {}", name, dump(value));
+            throw refusal(file, "it was rendered with {} {}", name, jsonText(value));
 }
 
 } // namespace passes

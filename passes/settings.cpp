@@ -2,6 +2,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/fingerprint.h"
+#include "engine/base/json.h"
+#include "engine/base/shown.h"
 
 #include <array>
 #include <charconv>
@@ -181,7 +183,7 @@ template <class T>
 void fromJson(const Knob& knob, T&& field, const Json& json)
 {
     using Value = std::remove_cvref_t<T>;
-    const std::string given = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string given = shown(jsonText(json));
     if constexpr (std::same_as<Value, bool>) {
         if (!json.is_boolean()) throw Error("Setting \"{}\" cannot be {}; it takes true or false.", knob.name, given);
         field = json.get<bool>();
@@ -223,7 +225,7 @@ void set(Settings& settings, std::string_view name, std::string_view text)
 {
     bool found = false;
     visitSettings(settings, [&]<class T>(const Knob& knob, T&& field) {
-        if (item.key() != knob.name) return;
+        if (name != knob.name) return;
         found = true;
         fromText(knob, std::forward<T>(field), text);
     });
@@ -250,7 +252,7 @@ void apply(Settings& settings, const nlohmann::ordered_json& preset)
     for (const auto& item : preset.items()) { // clang 14 captures no structured bindings
         bool found = false;
         visitSettings(settings, [&]<class T>(const Knob& knob, T&& field) {
-            if (name != knob.name) return;
+            if (item.key() != knob.name) return;
             found = true;
             fromJson(knob, std::forward<T>(field), item.value());
         });

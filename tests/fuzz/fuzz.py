@@ -10,7 +10,8 @@ import re
 import subprocess
 import sys
 
-TARGETS = ["gltf", "png", "jpeg", "exr", "hdr", "preset", "camera-path", "pipeline-cache", "checkpoint"]
+TARGETS = """gltf png jpeg exr hdr preset camera-path pipeline-cache checkpoint race-store correlation-batch
+    window-memory""".split()
 KEPT = pathlib.Path(__file__).parent / "corpus"
 SHARED = pathlib.Path(__file__).parents[3] / "shared" / "malformed"
 MODELS = {"gltf": ["*.gltf", "*.glb"], "hdr": ["*.hdr"], "png": ["*.png"], "jpeg": ["*.jpg"]}

@@ -6,6 +6,9 @@
 #include "passes/checkpoint.h"
 #include "tests/support/program.h"
 #include "tests/support/tiny_gltf.h"
+#include "ui/report/correlation_store.h"
+#include "ui/report/race_store.h"
+#include "ui/window/window_memory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -23,6 +26,14 @@ File bytesOf(const std::string& text)
     return {bytes.begin(), bytes.end()};
 }
 
+// glTF 2.0, 4.4: header, one chunk of JSON.
+File glb(std::string text)
+{
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const uint32_t size = uint32_t(text.size()), words[] = {0x46546c67, 2, size + 20, size, 0x4e4f534a};
+    return bytesOf(std::string(reinterpret_cast<const char*>(words), sizeof(words)) + text);
+}
+
 std::vector<File> gltf()
 {
     TinyGltf file;
@@ -34,7 +45,7 @@ std::vector<File> gltf()
     file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
     file.json["nodes"].push_back({{"camera", 0}, {"rotation", {0, 0, 0, 1}}});
     file.json["scenes"][0]["nodes"].push_back(1);
-    return {bytesOf(file.text())};
+    return {bytesOf(file.text()), glb(file.text())};
 }
 
 image::Image picture()
@@ -64,6 +75,32 @@ std::vector<File> checkpoint()
     return {files::read(folder / "x")};
 }
 
+std::vector<File> raceStore()
+{
+    const TemporaryDirectory folder;
+    passes::Repeat repeat{.samples = {{.method = 1, .average = true, .frames = 3}}};
+    ui::RaceStore(folder / "", "key", {"a", "b"}).write(1, repeat);
+    return {files::read(folder / "repeats/0001.json")};
+}
+
+std::vector<File> correlationBatch()
+{
+    const statistics::BatchValue value = {.value = 0.1, .without = {0.25, 1e300, 3}};
+    return {ui::toBytes({.method = "pt",
+                         .index = 7,
+                         .law = passes::FrameLaw{.variance = value, .plateau = value, .floor = {{1, 2, 3}}},
+                         .points = {{.frame = 2, .pixels = 9, .autocovariance = value, .variance = value}}})};
+}
+
+std::vector<File> windowMemory()
+{
+    const TemporaryDirectory folder;
+    ui::WindowMemory memory{.size = {800, 600}, .layout = "[Window]", .recent = {"hall"}};
+    memory.bookmarks["hall"][2] = ui::Pose{};
+    ui::keep(memory, folder / "window.json");
+    return {files::read(folder / "window.json")};
+}
+
 } // namespace
 
 std::vector<File> seeds(const std::string& target)
@@ -77,6 +114,9 @@ std::vector<File> seeds(const std::string& target)
     if (target == "pipeline-cache")
         return {gpu::sealCache({.vendor = 1, .device = 2, .driverVersion = 3}, bytesOf("blob"))};
     if (target == "checkpoint") return checkpoint();
+    if (target == "race-store") return raceStore();
+    if (target == "correlation-batch") return correlationBatch();
+    if (target == "window-memory") return windowMemory();
     return {}; // jpeg: there is no encoder here; tests/fuzz/corpus/jpeg has some
 }
 

@@ -1,7 +1,7 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/base/check.h"
-#include "engine/base/error.h"
+#include "engine/base/json.h"
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/image/codecs.h"
 #include "engine/scene/gltf_loader.h"
@@ -9,8 +9,9 @@
 #include "passes/camera_path.h"
 #include "passes/checkpoint.h"
 #include "tests/support/program.h"
-
-#include <nlohmann/json.hpp>
+#include "ui/report/correlation_store.h"
+#include "ui/report/race_store.h"
+#include "ui/window/window_memory.h"
 
 #include <cmath>
 
@@ -19,8 +20,6 @@ namespace fuzz
 
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 bool finite(const glm::dvec3& v)
 {
@@ -33,13 +32,17 @@ void checkCamera(const scene::Camera& camera)
     CHECK(std::abs(glm::length(camera.forward) - 1) < 1e-6);
 }
 
+void writeInput(const std::string& file, Bytes bytes)
+{
+    writeFile(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 // By way of a file, alone in its folder, as everywhere.
 scene::Scene load(Bytes bytes)
 {
     static const TemporaryDirectory folder;
-    const std::string file = folder / "scene.gltf";
-    writeFile(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    return scene::loadGltf(file);
+    writeInput(folder / "scene.gltf", bytes);
+    return scene::loadGltf(folder / "scene.gltf");
 }
 
 void gltf(Bytes bytes)
@@ -80,18 +83,10 @@ void hdr(Bytes bytes)
     CHECK_EQ(picture.pixels.size(), size_t{picture.width} * picture.height);
 }
 
-Json parse(Bytes bytes)
-{
-    const char* text = reinterpret_cast<const char*>(bytes.data());
-    Json json = Json::parse(text, text + bytes.size(), nullptr, false);
-    if (json.is_discarded()) throw Error("no JSON");
-    return json;
-}
-
 void preset(Bytes bytes)
 {
     passes::Settings settings, again;
-    passes::apply(settings, parse(bytes));
+    passes::apply(settings, parseJson(bytes));
     for (const auto& [name, value] : passes::toText(settings)) passes::set(again, name, value);
     CHECK(settings == again);
     passes::apply(again, passes::toJson(settings));
@@ -101,7 +96,7 @@ void preset(Bytes bytes)
 void cameraPath(Bytes bytes)
 {
     const scene::Camera base = {.forward = {0, 0, -1}};
-    const passes::CameraAt at = passes::cameraPath(parse(bytes), base, {1, 2, 3});
+    const passes::CameraAt at = passes::cameraPath(parseJson(bytes), base, {1, 2, 3});
     for (const uint64_t frame : {0, 1, 2, 7, 100, 5000, 1000000}) checkCamera(at(frame));
 }
 
@@ -117,6 +112,30 @@ void checkpoint(Bytes bytes)
     for (const auto& [name, buffer] : read.state.buffers) total += buffer.size();
     CHECK_LE(total, bytes.size());
     passes::requireSame(read, read.identity, "x");
+}
+
+void raceStore(Bytes bytes)
+{
+    static const TemporaryDirectory folder;
+    std::filesystem::create_directories(folder / "repeats");
+    writeInput(folder / "repeats/0000.json", bytes);
+    for (const passes::Repeat& repeat : ui::RaceStore(folder / "", "key", {"a", "b"}).read(1))
+        for (const passes::Sample& sample : repeat.samples) CHECK_LT(sample.method, 2u);
+}
+
+void correlationBatch(Bytes bytes)
+{
+    const ui::CorrelationBatch batch = ui::fromBytes({bytes.begin(), bytes.end()});
+    CHECK(ui::toBytes(ui::fromBytes(ui::toBytes(batch))) == ui::toBytes(batch));
+}
+
+void windowMemory(Bytes bytes)
+{
+    static const TemporaryDirectory folder;
+    writeInput(folder / "window.json", bytes);
+    const ui::WindowMemory memory = ui::recall(folder / "window.json");
+    if (memory == ui::WindowMemory()) throw Error("nothing to remember");
+    for (const int side : memory.size) CHECK(side > 0 && side < 1 << 20);
 }
 
 template <auto work>
@@ -141,6 +160,9 @@ constexpr Target TARGETS[] = {
     {"camera-path", accepts<cameraPath>},
     {"pipeline-cache", accepts<pipelineCache>},
     {"checkpoint", accepts<checkpoint>},
+    {"race-store", accepts<raceStore>},
+    {"correlation-batch", accepts<correlationBatch>},
+    {"window-memory", accepts<windowMemory>},
 };
 
 } // namespace

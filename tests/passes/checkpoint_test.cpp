@@ -9,6 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/test_scenes.h"
 
+#include <random>
 #include <stdexcept>
 
 namespace
@@ -155,6 +156,26 @@ TEST_F(CheckpointOfRenderer, GoesOnToTheSameBitsWithEveryMethodAndMovingCameras)
             EXPECT_EQ(second.readFrame().pixels, whole.readFrame().pixels);
             EXPECT_EQ(second.stats().rays, whole.stats().rays);
         }
+}
+
+// Whoever writes a checkpoint can also write its fingerprints: whatever it holds, frames end, on a device that is
+// robust.
+TEST_F(CheckpointOfRenderer, ForgedContentsDoNoHarm)
+{
+    const scene::Scene scene = glossy();
+    for (const Method method : {Method::RestirPt, Method::RgbRestir}) {
+        Renderer renderer(device(), scene, settings(method));
+        render(renderer, nullptr, 1);
+        passes::RendererState state = renderer.save();
+        std::mt19937 random(7);
+        for (auto& [name, bytes] : state.buffers)
+            for (std::byte& byte : bytes) byte = std::byte(random());
+        for (const double degrees : {0.0, 3.0}) { // shifts are left out while the camera rests
+            renderer.restore(state);
+            render(renderer, passes::cameraOrbit(scene.cameras.at(0), degrees), 3);
+            EXPECT_EQ(renderer.readFrame().pixels.size(), 24u * 20u);
+        }
+    }
 }
 
 TEST_F(CheckpointOfRenderer, FitsNoOtherMethodOrSizeAndNoOtherSceneHasItsFingerprint)

@@ -1,5 +1,6 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
+#include "engine/base/json.h"
 #include "passes/renderer.h"
 #include "ui/cli/checkpoint_options.h"
 #include "ui/cli/device_options.h"
@@ -11,8 +12,6 @@
 #include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
 #include "ui/commands/commands.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cstdio>
@@ -98,7 +97,7 @@ int RenderCommand::run()
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
     image::write(output, picture, metadataOf(report));
-    if (!stats.empty()) writeText(stats, toJson(report).dump(2) + "\n");
+    if (!stats.empty()) writeText(stats, jsonText(toJson(report), 2) + "\n");
 
     for (const auto& [stage, count] : report.stats.nonFinite)
         if (count > 0)
