@@ -36,7 +36,8 @@ void applyPreset(passes::Settings& settings, const std::string& nameOrFile)
 {
     whileDoing(fmt::format("reading preset \"{}\"", nameOrFile), [&] {
         passes::Settings changed = settings;
-        passes::apply(changed, parseJson(std::as_bytes(std::span(textOf(nameOrFile)))));
+        const std::string text = textOf(nameOrFile);
+        passes::apply(changed, parseJson(std::as_bytes(std::span(text))));
         settings = changed;
     });
 }
