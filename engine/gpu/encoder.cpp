@@ -80,6 +80,7 @@ void EncoderState::begin()
     device->name(VK_OBJECT_TYPE_COMMAND_BUFFER, current(), label);
     barrierBeforeWork(current()); // orders it after all that was submitted earlier
     milliseconds_ = 0;
+    names.push_back(label);
 }
 
 void EncoderState::finish()
@@ -153,6 +154,8 @@ void EncoderState::dispatchInBands(const PipelineState& pipeline, const Dispatch
             vkCheck(vkEndCommandBuffer(current()), "vkEndCommandBuffer", label);
             begin();
         }
+        std::string& work = names.back(); // a fresh command buffer has the encoder's name
+        work = milliseconds_ == 0 ? name : work.ends_with(name) ? work : work + ", " + name;
         milliseconds_ += expected;
 
         if (device->beginLabel) {

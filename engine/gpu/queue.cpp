@@ -43,54 +43,60 @@ void DeviceState::wait(Submission submission)
                                       .semaphoreCount = 1,
                                       .pSemaphores = &timeline,
                                       .pValues = &submission};
+    // Slow work may take its time as long as its command buffers come to their ends. (Queries would tell more, but
+    // lavapipe waits for the work when asked whether it is done.)
     VkResult result = VK_TIMEOUT;
-    // Slow work may take its time as long as it moves.
-    for (std::optional<std::pair<Submission, size_t>> before; result == VK_TIMEOUT;) {
+    for (std::optional<Submission> before; result == VK_TIMEOUT;) {
         result = waitSemaphores(device, &info, uint64_t(options.stallSeconds * 1e9));
         if (result != VK_TIMEOUT) break;
-        retire();
-        if (finished() >= submission) return;
-        const Flight& flight = flights.front();
-        const std::pair now = {flight.submission, finishedDispatches(flight)};
+        const Submission now = finished();
+        if (now >= submission) break;
         if (before == now) {
             stalled = true;
-            const auto& dispatches = flight.timestamps.dispatches;
-            throw Error(
-                "The Vulkan device \"{}\" stalls in \"{}\": nothing was finished for {} s.", physical.adapter.name,
-                now.second < dispatches.size() ? dispatches[now.second].label : flight.label, options.stallSeconds);
+            const Flight& flight = *std::ranges::find_if(flights, [&](const Flight& f) { return f.submission > now; });
+            throw Error("The Vulkan device \"{}\" stalls in \"{}\": nothing was finished for {} s.",
+                        physical.adapter.name, flight.names[now + flight.names.size() - flight.submission],
+                        options.stallSeconds);
         }
         before = now;
     }
-    vkCheck(result, "vkWaitSemaphores", "queue");
+    if (result != VK_TIMEOUT) vkCheck(result, "vkWaitSemaphores", "queue");
     retire();
 }
 
 Submission DeviceState::submit(std::unique_ptr<EncoderState> encoder)
 {
     retire();
-    Flight flight = {
-        .submission = submitted + 1, .label = encoder ? encoder->label : "writes", .stagingHead = ring.head};
+    Flight flight = {.stagingHead = ring.head};
     const std::unique_ptr<EncoderState> uploads = std::move(pendingWrites);
     for (EncoderState* part : {uploads.get(), encoder.get()}) {
         if (!part) continue;
         part->finish();
         flight.commands.insert(flight.commands.end(), part->commands.begin(), part->commands.end());
+        flight.names.insert(flight.names.end(), part->names.begin(), part->names.end());
     }
 
-    const VkTimelineSemaphoreSubmitInfo values = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                                  .signalSemaphoreValueCount = 1,
-                                                  .pSignalSemaphoreValues = &flight.submission};
-    // One batch for each command buffer: drivers watch the time of batches.
-    std::vector<VkSubmitInfo> batches;
-    for (const VkCommandBuffer& commands : flight.commands)
-        batches.push_back(
-            {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands});
-    if (batches.empty()) batches.push_back({.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO});
-    batches.back().pNext = &values;
-    batches.back().signalSemaphoreCount = 1;
-    batches.back().pSignalSemaphores = &timeline;
-    vkCheck(queueSubmit(vkQueue, uint32_t(batches.size()), batches.data(), VK_NULL_HANDLE), "vkQueueSubmit",
-            flight.label);
+    // One batch for each command buffer: drivers watch the time of batches, and each tells that it is done.
+    const size_t count = std::max<size_t>(flight.commands.size(), 1);
+    flight.names.resize(count, "nothing");
+    std::vector<uint64_t> values(count);
+    std::vector<VkTimelineSemaphoreSubmitInfo> signals(count);
+    std::vector<VkSubmitInfo> batches(count);
+    for (size_t i = 0; i < count; ++i) {
+        values[i] = submitted + 1 + i;
+        signals[i] = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                      .signalSemaphoreValueCount = 1,
+                      .pSignalSemaphoreValues = &values[i]};
+        batches[i] = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                      .pNext = &signals[i],
+                      .commandBufferCount = flight.commands.empty() ? 0u : 1u,
+                      .pCommandBuffers = flight.commands.empty() ? nullptr : &flight.commands[i],
+                      .signalSemaphoreCount = 1,
+                      .pSignalSemaphores = &timeline};
+    }
+    flight.submission = values.back();
+    vkCheck(queueSubmit(vkQueue, uint32_t(count), batches.data(), VK_NULL_HANDLE), "vkQueueSubmit",
+            encoder ? encoder->label : "writes");
     submitted = flight.submission;
 
     // The flight owns from here on what the encoders held.
@@ -150,17 +156,6 @@ void DeviceState::collect(const Flight& flight)
         else
             timings.push_back({dispatch.label, milliseconds});
     }
-}
-
-size_t DeviceState::finishedDispatches(const Flight& flight) const
-{
-    const Timestamps& timestamps = flight.timestamps;
-    size_t count = 0;
-    for (uint64_t end = 0; count < timestamps.dispatches.size(); ++count)
-        if (vkGetQueryPoolResults(device, timestamps.page(count), Timestamps::query(count) + 1, 1, sizeof(end), &end,
-                                  sizeof(end), VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
-            break;
-    return count;
 }
 
 // ------------------------------------------------------------------------------------------------- things to use again

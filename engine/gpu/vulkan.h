@@ -137,6 +137,7 @@ struct EncoderState {
     DeviceState* device;
     std::string label;
     std::vector<VkCommandBuffer> commands; // the last one is being recorded
+    std::vector<std::string> names;        // of the dispatches in each, or the encoder's
     HazardTracker<VkBuffer> hazards;
     Timestamps timestamps;
 
@@ -153,8 +154,8 @@ struct EncoderState {
 // Work that the queue has been given and that is not known to be done.
 struct Flight {
     Submission submission = 0;
-    std::string label; // the encoder's
-    std::vector<VkCommandBuffer> commands;
+    std::vector<VkCommandBuffer> commands; // at least one submission each; the last one is `submission`
+    std::vector<std::string> names;        // of what each does
     Timestamps timestamps;
     uint64_t stagingHead = 0; // the ring is free up to here once this has finished
 };
@@ -246,7 +247,6 @@ struct DeviceState {
     };
     DeviceState(const DeviceDescriptor& descriptor, WithoutDevice);
     void collect(const Flight& flight);
-    size_t finishedDispatches(const Flight& flight) const;
 };
 
 } // namespace gpu

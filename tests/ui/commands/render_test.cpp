@@ -96,8 +96,10 @@ TEST_F(Render, AFileWhoseNameIsNoUtf8IsAsGoodAsAny)
     TinyGltf file;
     writeFile(scene, file.text());
     for (const std::string& out : {directory / "a.exr", directory / "b.png"})
-        runWell({"render", scene, "-o", out, "--size", "8x8", "--frames", "1", "--stats", stats, "--checkpoint",
-                 directory / "x.ckpt"});
+        EXPECT_EQ(run({"render", scene, "-o", out, "--size", "8x8", "--frames", "1", "--stats", stats, "--checkpoint",
+                       directory / "x.ckpt"})
+                      .exitCode,
+                  0);
     EXPECT_TRUE(readJson(stats)["scene"].get<std::string>().ends_with("h\uFFFDll.gltf"));
 }
 
