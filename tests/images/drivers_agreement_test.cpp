@@ -109,14 +109,17 @@ TEST_P(DriversAgreement, OnTheMeanOfEveryTile)
                 verdict.summary.c_str());
 }
 
+constexpr Method METHODS[] = {Method::Pt, Method::RestirPt, Method::RgbRestir, Method::GroupedRestir};
+constexpr const char* METHOD_NAMES[] = {"Pt", "RestirPt", "RgbRestir", "GroupedRestir"};
+
+std::string nameOf(const testing::TestParamInfo<DriversAgreement::ParamType>& test)
+{
+    return std::string(std::get<0>(test.param).name) + METHOD_NAMES[size_t(std::get<1>(test.param))];
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, DriversAgreement,
-                         testing::Combine(testing::ValuesIn(scene::builtInScenes()),
-                                          testing::Values(Method::Pt, Method::RestirPt, Method::RgbRestir,
-                                                          Method::GroupedRestir)),
-                         [](const auto& i) {
-                             static const char* const NAMES[] = {"Pt", "RestirPt", "RgbRestir", "GroupedRestir"};
-                             return std::string(std::get<0>(i.param).name) + NAMES[int(std::get<1>(i.param))];
-                         });
+                         testing::Combine(testing::ValuesIn(scene::builtInScenes()), testing::ValuesIn(METHODS)),
+                         nameOf);
 
 } // namespace
 } // namespace support
