@@ -2,6 +2,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
+#include "engine/base/shown.h"
 
 #include <algorithm>
 #include <array>
@@ -49,27 +51,28 @@ glm::dvec3 vectorOf(const Json& json, const char* name)
         return value.is_number() && std::abs(value.get<double>()) <= MAX_COORDINATE;
     };
     if (!json.is_array() || json.size() != 3 || !std::ranges::all_of(json, isCoordinate))
-        throw Error("\"{}\" must be three numbers of at most {:g}, not {}.", name, MAX_COORDINATE, json.dump());
+        throw Error("\"{}\" must be three numbers of at most {:g}, not {}.", name, MAX_COORDINATE,
+                    shown(jsonText(json)));
     return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
 }
 
 Keyframe keyframeOf(const Json& json, const scene::Camera& base, const glm::dvec3& origin)
 {
-    if (!json.is_object()) throw Error("A keyframe is an object, not {}.", json.dump());
+    if (!json.is_object()) throw Error("A keyframe is an object, not {}.", shown(jsonText(json)));
     static const std::set<std::string> KNOWN = {"frame", "position", "target", "up", "yfov"};
     for (const auto& [name, value] : json.items())
-        if (!KNOWN.contains(name)) throw Error("There is no \"{}\" in a keyframe.", name);
+        if (!KNOWN.contains(name)) throw Error("There is no \"{}\" in a keyframe.", shown(name));
     for (const char* name : {"frame", "position", "target"})
         if (!json.contains(name)) throw Error("\"{}\" is missing.", name);
 
     const Json& frame = json["frame"];
     if (!frame.is_number_unsigned() || frame.get<uint64_t>() > MAX_KEYFRAME)
-        throw Error("\"frame\" must be a whole number from 0 to {}, not {}.", MAX_KEYFRAME, frame.dump());
+        throw Error("\"frame\" must be a whole number from 0 to {}, not {}.", MAX_KEYFRAME, shown(jsonText(frame)));
     double yfov = base.orthographic ? glm::half_pi<double>() : base.yfov;
     if (json.contains("yfov")) {
         const Json& degrees = json["yfov"];
         if (!degrees.is_number() || !(degrees.get<double>() > 0.01 && degrees.get<double>() < 179))
-            throw Error("\"yfov\" must be an angle between 0.01 and 179 degrees, not {}.", degrees.dump());
+            throw Error("\"yfov\" must be an angle between 0.01 and 179 degrees, not {}.", shown(jsonText(degrees)));
         yfov = glm::radians(degrees.get<double>());
     }
     return {.frame = frame.get<double>(),
@@ -162,14 +165,7 @@ template <class Use>
 auto withFile(const std::filesystem::path& file, Use&& use)
 {
     const std::vector<std::byte> bytes = files::read(file, MAX_FILE_BYTES);
-    return whileDoing(fmt::format("reading camera path \"{}\"", file.string()), [&] {
-        const char* text = reinterpret_cast<const char*>(bytes.data());
-        try {
-            return use(Json::parse(text, text + bytes.size()));
-        } catch (const Json::exception& error) {
-            throw Error("The camera path is not JSON: {}.", error.what());
-        }
-    });
+    return whileDoing(fmt::format("reading camera path \"{}\"", file.string()), [&] { return use(parseJson(bytes)); });
 }
 
 } // namespace

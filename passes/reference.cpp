@@ -1,7 +1,7 @@
 #include "passes/reference.h"
 
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
+#include "engine/base/fingerprint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,10 +103,11 @@ const Reference* References::after(uint64_t frames)
     if (const auto found = made_.find(index); found != made_.end()) return &found->second;
     if (cameraAt_) renderer_->setCamera(cameraAt_(frames - 1));
     traceBatch(0, 1);
-    const std::vector<glm::vec3> fingerprint = renderer_->readMean().pixels;
+    const std::vector<glm::vec3> pixels = renderer_->readMean().pixels;
     const std::string text =
         fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
-    const std::string key = fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(fingerprint)), fnv1a(text)));
+    const std::string key =
+        fmt::format("{:016x}", fingerprint(std::as_bytes(std::span(pixels)), fingerprint(std::string_view(text))));
 
     const std::filesystem::path file = options_.cache / (key + ".exr");
     std::optional<Reference> reference;

@@ -1,6 +1,7 @@
 #include "passes/renderer.h"
 
 #include "engine/base/check.h"
+#include "engine/base/fingerprint.h"
 #include "passes/camera_choice.h"
 #include "passes/estimator.h"
 
@@ -100,14 +101,17 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
+    const double scales[] = {lengthScale_, radianceScale_};
+    sceneFingerprint_ = fingerprint(std::as_bytes(std::span(scales)), scene_->contents());
+    sceneFingerprint_ = fingerprint(std::as_bytes(std::span(&frame_.camera, 1)), sceneFingerprint_);
     createStages();
 }
 
 Renderer::Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs)
     : device_(sibling.device_), settings_(settings), featureSet_(sibling.featureSet_), runs_(runs),
       sceneFeatures_(sibling.sceneFeatures_), orthographic_(sibling.orthographic_), lengthScale_(sibling.lengthScale_),
-      radianceScale_(sibling.radianceScale_), stats_(sibling.stats_), pipelines_(sibling.pipelines_),
-      scene_(sibling.scene_)
+      radianceScale_(sibling.radianceScale_), sceneFingerprint_(sibling.sceneFingerprint_), stats_(sibling.stats_),
+      pipelines_(sibling.pipelines_), scene_(sibling.scene_)
 {
     CHECK(settings.environment == sibling.settings_.environment);
     CHECK(settings.environmentScale == sibling.settings_.environmentScale);

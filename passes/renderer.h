@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
@@ -37,6 +39,14 @@ struct RenderStats {
     double bytesPerPixel = 0;                   // of all buffers that grow with the picture
     double reservoirBytes = 0;                  // of those: per reservoir and pixel, both sets
     std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
+};
+
+// All that the next frame needs of those before it.
+struct RendererState {
+    uint64_t frames = 0;        // on the film
+    uint64_t historyFrames = 0; // of reservoirs that the next frame may reuse
+    shared::CameraUniform camera = {}, previousCamera = {};
+    std::vector<std::pair<std::string, std::vector<std::byte>>> buffers; // by name, as on the device
 };
 
 class Renderer
@@ -84,6 +94,11 @@ class Renderer
     const Variant& variant() const { return variant_; }
     PipelinePool& pipelines() { return *pipelines_; }
     gpu::Device& device() { return device_; }
+    // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
+    // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit.
+    RendererState save(); // waits
+    void restore(const RendererState& state);
+    uint64_t sceneFingerprint() const { return sceneFingerprint_; } // geometry, materials, lights, first camera
 
   private:
     void createBuffers();
@@ -93,6 +108,7 @@ class Renderer
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
     uint32_t pictureHeight() const { return settings_.height * runs_; }
+    std::vector<gpu::Buffer*> lastingBuffers();
 
     gpu::Device& device_;
     Settings settings_;
@@ -101,6 +117,7 @@ class Renderer
     scene::SceneFeatures sceneFeatures_;
     bool orthographic_ = false;
     double lengthScale_ = 1, radianceScale_ = 1;
+    uint64_t sceneFingerprint_ = 0;
     Variant variant_;
     RenderStats stats_;
     shared::FrameUniform frame_ = {};

@@ -1,7 +1,9 @@
 #include "passes/settings.h"
 
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
+#include "engine/base/fingerprint.h"
+#include "engine/base/json.h"
+#include "engine/base/shown.h"
 
 #include <array>
 #include <charconv>
@@ -181,7 +183,7 @@ template <class T>
 void fromJson(const Knob& knob, T&& field, const Json& json)
 {
     using Value = std::remove_cvref_t<T>;
-    const std::string given = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string given = shown(jsonText(json));
     if constexpr (std::same_as<Value, bool>) {
         if (!json.is_boolean()) throw Error("Setting \"{}\" cannot be {}; it takes true or false.", knob.name, given);
         field = json.get<bool>();
@@ -247,21 +249,22 @@ nlohmann::ordered_json toJson(const Settings& settings)
 void apply(Settings& settings, const nlohmann::ordered_json& preset)
 {
     if (!preset.is_object()) throw Error("A preset is an object {{\"name\": value, ...}}, not {}.", preset.type_name());
-    for (const auto& [name, value] : preset.items()) {
+    for (const auto& item : preset.items()) { // clang 14 captures no structured bindings
         bool found = false;
         visitSettings(settings, [&]<class T>(const Knob& knob, T&& field) {
-            if (name != knob.name) return;
+            if (item.key() != knob.name) return;
             found = true;
-            fromJson(knob, std::forward<T>(field), value);
+            fromJson(knob, std::forward<T>(field), item.value());
         });
-        if (!found) throw unknown(name);
+        if (!found) throw unknown(item.key());
     }
 }
 
 std::string hash(const Settings& settings)
 {
-    uint64_t state = FNV_START; // names and values are set apart by bytes that no value contains
-    for (const auto& [name, value] : toText(settings)) state = fnv1a(value, fnv1a(name, state));
+    uint64_t state = 0;
+    for (const auto& [name, value] : toText(settings))
+        state = fingerprint(std::string_view(value), fingerprint(std::string_view(name), state));
     return fmt::format("{:016x}", state);
 }
 

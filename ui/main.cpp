@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 namespace
 {
@@ -22,24 +23,7 @@ int say(int code, const char* sentence)
     return code;
 }
 
-int run(const ui::Action& action, bool shares)
-{
-    try {
-        if (!shares && ui::ranks().count() > 1)
-            throw ui::UsageError("Only correlate shares its work over processes; start this command once.");
-        return action();
-    } catch (const ui::UsageError& error) {
-        return say(EXIT_USAGE, error.what());
-    } catch (const Error& error) {
-        return say(EXIT_WORLD, error.what());
-    } catch (const std::bad_alloc&) {
-        return say(EXIT_WORLD, "Out of memory.");
-    }
-}
-
-} // namespace
-
-int main(int argc, char** argv)
+int trichrome(int argc, char** argv)
 {
     CLI::App app("Trichrome renders glTF scenes by path tracing, ReSTIR PT and RGB ReSTIR on any Vulkan device.");
     app.name("trichrome");
@@ -67,5 +51,29 @@ int main(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : EXIT_USAGE; // 0: --help, --version
     }
-    return ui::ranks().finish(run(chosen, shares));
+    if (!shares && ui::ranks().count() > 1)
+        throw ui::UsageError("Only correlate shares its work over processes; start this command once.");
+    return chosen();
+}
+
+int guarded(int argc, char** argv)
+{
+    try {
+        return trichrome(argc, argv);
+    } catch (const ui::UsageError& error) {
+        return say(EXIT_USAGE, error.what());
+    } catch (const Error& error) {
+        return say(EXIT_WORLD, error.what());
+    } catch (const std::bad_alloc&) {
+        return say(EXIT_WORLD, "Out of memory.");
+    } catch (const std::system_error& error) { // threads, folders
+        return say(EXIT_WORLD, fmt::format("The system refuses: {}.", error.what()).c_str());
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return ui::ranks().finish(guarded(argc, argv));
 }

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <memory>
 #include <unistd.h>
 
@@ -18,6 +19,42 @@ struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using File = std::unique_ptr<std::FILE, Close>;
+
+// A file to be written, without a name where the file system has such: then nothing is left of it unless name() is
+// reached, whatever ends the process.
+class Target
+{
+  public:
+    explicit Target(const std::filesystem::path& name) : name_(name)
+    {
+        const std::filesystem::path folder = name.has_parent_path() ? name.parent_path() : ".";
+        if (::access("/proc/self/fd", X_OK) == 0) // by which it gets its name
+            descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        nameless_ = descriptor_ >= 0;
+        if (!nameless_) descriptor_ = ::open(name.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+    }
+    ~Target()
+    {
+        if (opened()) ::close(descriptor_);
+    }
+    Target(const Target&) = delete;
+    Target& operator=(const Target&) = delete;
+
+    bool opened() const { return descriptor_ >= 0; }
+    int descriptor() const { return descriptor_; }
+    bool name() const
+    {
+        if (!nameless_) return true;
+        ::unlink(name_.c_str()); // of a dead process with our number
+        const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
+        return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    }
+
+  private:
+    std::filesystem::path name_;
+    int descriptor_ = -1;
+    bool nameless_ = false;
+};
 
 } // namespace
 
@@ -39,7 +76,12 @@ std::vector<std::byte> read(const std::filesystem::path& path, uint64_t maxBytes
     return bytes;
 }
 
-void writeAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes)
+void writeAtomically(const std::filesystem::path& path, Bytes bytes)
+{
+    writeAtomically(path, std::span(&bytes, 1));
+}
+
+void writeAtomically(const std::filesystem::path& path, std::span<const Bytes> pieces)
 {
     std::filesystem::path temporary = path;
     temporary += fmt::format(".{}.tmp", ::getpid());
@@ -50,11 +92,17 @@ void writeAtomically(const std::filesystem::path& path, std::span<const std::byt
         return Error("Cannot write \"{}\": {} ({}).", path.string(), what, std::strerror(reason));
     };
 
-    File file(std::fopen(temporary.c_str(), "wb"));
-    if (!file) throw fail("cannot create a file there");
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) throw fail("short write");
-    if (std::fflush(file.get()) != 0) throw fail("short write");
-    if (std::fclose(file.release()) != 0) throw fail("cannot close");
+    const Target target(temporary);
+    if (!target.opened()) throw fail("cannot create a file there");
+    for (Bytes piece : pieces)
+        while (!piece.empty()) {
+            const ssize_t written = ::write(target.descriptor(), piece.data(), piece.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) throw fail("short write");
+            piece = piece.subspan(size_t(written));
+        }
+    if (::fsync(target.descriptor()) != 0) throw fail("cannot bring it to the disk");
+    if (!target.name()) throw fail("cannot name the file");
     if (std::rename(temporary.c_str(), path.c_str()) != 0) throw fail("cannot rename into place");
 }
 

@@ -1,8 +1,12 @@
-// Opening and closing a device.
+// Opening and closing a device, with its pipeline cache.
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/files.h"
+#include "engine/gpu/pipeline_cache.h"
 #include "engine/gpu/vulkan.h"
+
+#include <cstring>
 
 namespace gpu
 {
@@ -10,13 +14,13 @@ namespace gpu
 namespace
 {
 
-VkDevice openDevice(const PhysicalDevice& physical, bool validation)
+VkDevice openDevice(const PhysicalDevice& physical, bool robust)
 {
     VkPhysicalDeviceVulkan12Features features12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
                                                    .timelineSemaphore = VK_TRUE}; // every Vulkan 1.2 device has it
     const VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                                 .pNext = &features12,
-                                                .features = {.robustBufferAccess = validation}};
+                                                .features = {.robustBufferAccess = robust}};
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                            .queueFamilyIndex = physical.queueFamily,
@@ -34,15 +38,31 @@ VkDevice openDevice(const PhysicalDevice& physical, bool validation)
     return device;
 }
 
+constexpr uint64_t MAX_CACHE_BYTES = uint64_t{256} << 20;
+
+CacheOwner ownerOf(const VkPhysicalDeviceProperties& properties)
+{
+    CacheOwner owner = {
+        .vendor = properties.vendorID, .device = properties.deviceID, .driverVersion = properties.driverVersion};
+    static_assert(sizeof(owner.uuid) == sizeof(properties.pipelineCacheUUID));
+    std::memcpy(owner.uuid.data(), properties.pipelineCacheUUID, sizeof(owner.uuid));
+    return owner;
+}
+
 } // namespace
 
-DeviceState::DeviceState(const DeviceDescriptor& wanted) : options(wanted), instance(wanted.validation)
+DeviceState::DeviceState(const DeviceDescriptor& wanted, WithoutDevice) : options(wanted), instance(wanted.validation)
+{
+}
+
+// Delegates, so that the destructor cleans up when opening fails halfway.
+DeviceState::DeviceState(const DeviceDescriptor& wanted) : DeviceState(wanted, WithoutDevice())
 {
     const std::vector<PhysicalDevice> devices = physicalDevices(instance.handle());
     physical = choose(devices, wanted.adapter);
     vkGetPhysicalDeviceProperties(physical.handle, &properties);
     vkGetPhysicalDeviceMemoryProperties(physical.handle, &memoryProperties);
-    device = openDevice(physical, wanted.validation);
+    device = openDevice(physical, wanted.validation || wanted.robust);
     vkGetDeviceQueue(device, physical.queueFamily, 0, &vkQueue);
 
     if (instance.canName()) {
@@ -76,10 +96,20 @@ DeviceState::~DeviceState()
     staging.reset();
     CHECK_EQ(liveObjects.load(), 0u); // every buffer, pipeline and bind group must go before its device
     CHECK_EQ(openEncoders, 0u);
-    vkDeviceWaitIdle(device); // of a lost device too
+    if (!device) return;
+    try {
+        if (submitted > 0 && !stalled) wait(submitted); // unlike vkDeviceWaitIdle() not for ever
+    } catch (const std::exception&) {
+        // A lost device is idle, too.
+    }
+    if (stalled) {
+        instance.abandon();
+        return;
+    }
+    vkDeviceWaitIdle(device);
     try {
         savePipelineCache();
-    } catch (const Error&) {
+    } catch (const std::exception&) {
         // Only time is lost: the next run compiles again.
     }
     vkDestroyPipelineCache(device, pipelineCache, nullptr);
@@ -91,6 +121,51 @@ DeviceState::~DeviceState()
     vkDestroySemaphore(device, timeline, nullptr);
     vkDestroyCommandPool(device, commandPool, nullptr);
     vkDestroyDevice(device, nullptr);
+}
+
+std::filesystem::path DeviceState::cachePath() const
+{
+    return std::filesystem::path(options.cacheDirectory) /
+           fmt::format("pipelines-{:04x}-{:04x}.cache", properties.vendorID, properties.deviceID);
+}
+
+void DeviceState::loadPipelineCache()
+{
+    if (options.cacheDirectory.empty()) return;
+    std::optional<std::vector<std::byte>> blob;
+    try {
+        blob = openCache(ownerOf(properties), files::read(cachePath(), MAX_CACHE_BYTES));
+    } catch (const Error&) {
+        // No cache yet, or none that can be read: begin anew.
+    }
+    savedCache = blob.value_or(std::vector<std::byte>{});
+    const VkPipelineCacheCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                            .initialDataSize = savedCache.size(),
+                                            .pInitialData = savedCache.data()};
+    vkCheck(vkCreatePipelineCache(device, &info, nullptr, &pipelineCache), "vkCreatePipelineCache", "pipeline cache");
+    name(VK_OBJECT_TYPE_PIPELINE_CACHE, pipelineCache, "pipeline cache");
+}
+
+void DeviceState::savePipelineCache()
+{
+    if (!pipelineCache) return;
+    size_t size = 0;
+    vkCheck(vkGetPipelineCacheData(device, pipelineCache, &size, nullptr), "vkGetPipelineCacheData", "pipeline cache");
+    std::vector<std::byte> blob(size);
+    vkCheck(vkGetPipelineCacheData(device, pipelineCache, &size, blob.data()), "vkGetPipelineCacheData",
+            "pipeline cache");
+    blob.resize(size);
+    if (blob == savedCache) return;
+    std::error_code failure;
+    std::filesystem::create_directories(options.cacheDirectory, failure);
+    if (failure) throw Error("Cannot create the cache folder \"{}\": {}.", options.cacheDirectory, failure.message());
+    files::writeAtomically(cachePath(), sealCache(ownerOf(properties), blob));
+    savedCache = std::move(blob);
+}
+
+void Device::savePipelineCache()
+{
+    state_->savePipelineCache();
 }
 
 void DeviceState::name(VkObjectType type, uint64_t handle, const std::string& label) const

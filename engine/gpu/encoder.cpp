@@ -5,6 +5,7 @@
 #include "engine/gpu/vulkan.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gpu
 {
@@ -57,34 +58,40 @@ std::vector<BufferUse<VkBuffer>> usesOf(const PipelineState& pipeline, const Dis
 
 } // namespace
 
-EncoderState::EncoderState(DeviceState& owner, const std::string& name)
-    : device(&owner), label(name), commands(owner.takeCommandBuffer())
+EncoderState::EncoderState(DeviceState& owner, const std::string& name) : device(&owner), label(name)
 {
-    const VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                           .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    vkCheck(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer", label);
-    owner.name(VK_OBJECT_TYPE_COMMAND_BUFFER, commands, label);
-    barrierBeforeWork(commands); // orders it after all that was submitted earlier
+    begin();
     ++device->openEncoders;
 }
 
 EncoderState::~EncoderState()
 {
     --device->openEncoders;
-    if (!commands) return;
-    vkResetCommandBuffer(commands, 0);
-    device->recycle({commands}, std::move(timestamps.pages));
+    for (const VkCommandBuffer buffer : commands) vkResetCommandBuffer(buffer, 0);
+    device->recycle(std::move(commands), std::move(timestamps.pages));
+}
+
+void EncoderState::begin()
+{
+    commands.push_back(device->takeCommandBuffer());
+    const VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                           .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    vkCheck(vkBeginCommandBuffer(current(), &info), "vkBeginCommandBuffer", label);
+    device->name(VK_OBJECT_TYPE_COMMAND_BUFFER, current(), label);
+    barrierBeforeWork(current()); // orders it after all that was submitted earlier
+    milliseconds_ = 0;
+    names.push_back(label);
 }
 
 void EncoderState::finish()
 {
-    barrier(commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-    vkCheck(vkEndCommandBuffer(commands), "vkEndCommandBuffer", label);
+    barrier(current(), VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    vkCheck(vkEndCommandBuffer(current()), "vkEndCommandBuffer", label);
 }
 
 void EncoderState::beforeWork(std::span<const BufferUse<VkBuffer>> uses)
 {
-    if (hazards.needsBarrier(uses)) barrierBeforeWork(commands);
+    if (hazards.needsBarrier(uses)) barrierBeforeWork(current());
 }
 
 void EncoderState::timestamp(uint32_t query)
@@ -92,9 +99,9 @@ void EncoderState::timestamp(uint32_t query)
     const uint32_t perPage = 2 * Timestamps::DISPATCHES_PER_PAGE;
     if (query / perPage == timestamps.pages.size()) {
         timestamps.pages.push_back(device->takeQueryPage());
-        vkCmdResetQueryPool(commands, timestamps.pages.back(), 0, perPage);
+        vkCmdResetQueryPool(current(), timestamps.pages.back(), 0, perPage);
     }
-    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.pages[query / perPage],
+    vkCmdWriteTimestamp(current(), VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps.pages[query / perPage],
                         query % perPage);
 }
 
@@ -117,40 +124,67 @@ void EncoderState::dispatch(const Dispatch& dispatch)
     const auto uses = usesOf(pipeline, dispatch);
     if (groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;
 
-    if (device->beginLabel) {
-        const VkDebugUtilsLabelEXT region = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
-                                             .pLabelName = name.c_str()};
-        device->beginLabel(commands, &region);
-    }
     beforeWork(uses);
     const bool timed = device->physical.adapter.limits.timestamps;
-    const uint32_t index = uint32_t(timestamps.labels.size());
+    const uint32_t index = uint32_t(timestamps.dispatches.size());
     if (timed) timestamp(2 * index);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
-    for (uint32_t set = 0; set < pipeline.setLayouts.size(); ++set)
-        if (set < dispatch.groups.size() && dispatch.groups[set])
-            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, set, 1,
-                                    &dispatch.groups[set]->state()->descriptors, 0, nullptr);
-    vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+    dispatchInBands(pipeline, dispatch, groups, name);
     if (timed) {
         timestamp(2 * index + 1);
-        timestamps.labels.push_back(name);
+        timestamps.dispatches.push_back({name, uint64_t{groups[0]} * groups[1] * groups[2]});
     }
-    if (device->endLabel) device->endLabel(commands);
+}
+
+// Bands along the longest axis, each short enough to be expected below LONGEST_MILLISECONDS.
+void EncoderState::dispatchInBands(const PipelineState& pipeline, const Dispatch& dispatch,
+                                   const std::array<uint32_t, 3>& groups, const std::string& name)
+{
+    const uint32_t axis = uint32_t(std::ranges::max_element(groups) - groups.begin());
+    const auto known = device->groupMilliseconds.find(name);
+    const bool isKnown = known != device->groupMilliseconds.end();
+    const double slice = isKnown ? known->second * groups[0] * groups[1] * groups[2] / groups[axis] : 0;
+    const double bands = isKnown ? std::ceil(slice * groups[axis] / LONGEST_MILLISECONDS) : FIRST_BANDS;
+    const uint32_t step = uint32_t(std::clamp(std::floor(groups[axis] / bands), 1.0, double(groups[axis])));
+
+    for (std::array<uint32_t, 3> base = {0, 0, 0}; base[axis] < groups[axis]; base[axis] += step) {
+        std::array<uint32_t, 3> size = groups;
+        size[axis] = std::min(step, groups[axis] - base[axis]);
+        const double expected = isKnown ? slice * size[axis] : LONGEST_MILLISECONDS;
+        if (milliseconds_ > 0 && milliseconds_ + expected > LONGEST_MILLISECONDS) {
+            vkCheck(vkEndCommandBuffer(current()), "vkEndCommandBuffer", label);
+            begin();
+        }
+        std::string& work = names.back(); // a fresh command buffer has the encoder's name
+        work = milliseconds_ == 0 ? name : work.ends_with(name) ? work : work + ", " + name;
+        milliseconds_ += expected;
+
+        if (device->beginLabel) {
+            const VkDebugUtilsLabelEXT region = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                                 .pLabelName = name.c_str()};
+            device->beginLabel(current(), &region);
+        }
+        vkCmdBindPipeline(current(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+        for (uint32_t set = 0; set < pipeline.setLayouts.size(); ++set)
+            if (set < dispatch.groups.size() && dispatch.groups[set])
+                vkCmdBindDescriptorSets(current(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, set, 1,
+                                        &dispatch.groups[set]->state()->descriptors, 0, nullptr);
+        vkCmdDispatchBase(current(), base[0], base[1], base[2], size[0], size[1], size[2]);
+        if (device->endLabel) device->endLabel(current());
+    }
 }
 
 void EncoderState::copy(const BufferState& from, const BufferState& to, const VkBufferCopy& region)
 {
     const BufferUse<VkBuffer> uses[] = {{from.buffer, true, false}, {to.buffer, false, true}};
     beforeWork(uses);
-    vkCmdCopyBuffer(commands, from.buffer, to.buffer, 1, &region);
+    vkCmdCopyBuffer(current(), from.buffer, to.buffer, 1, &region);
 }
 
 void EncoderState::fill(const BufferState& buffer, uint32_t word)
 {
     const BufferUse<VkBuffer> uses[] = {{buffer.buffer, false, true}};
     beforeWork(uses);
-    vkCmdFillBuffer(commands, buffer.buffer, 0, VK_WHOLE_SIZE, word);
+    vkCmdFillBuffer(current(), buffer.buffer, 0, VK_WHOLE_SIZE, word);
 }
 
 CommandEncoder Device::createCommandEncoder(const std::string& label)

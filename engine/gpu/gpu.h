@@ -58,7 +58,9 @@ struct DeviceDescriptor {
     std::string
         shaderDirectory; // if set: read and compile GLSL from here at run time (hot reload) instead of embedded SPIR-V
     std::string cacheDirectory; // pipeline cache; empty: none
-    bool forceStaging = false;  // copy to and from the device even where the host sees its memory (tests)
+    double stallSeconds = 300;  // waiting throws Error when no dispatch finishes for so long
+    bool robust = false; // accesses outside of buffers do no harm: for contents from a file. Validation implies it
+    bool forceStaging = false; // copy to and from the device even where the host sees its memory (tests)
 };
 
 enum class Usage : uint32_t {
@@ -212,7 +214,7 @@ class Queue
   public:
     explicit Queue(DeviceState& device) : device_(&device) {}
     Submission submit(CommandEncoder&& encoder); // throws Error when the device is lost or out of memory
-    void wait(Submission submission);            // throws Error when the device is lost
+    void wait(Submission submission);            // throws Error when the device is lost or stalls
     bool done(Submission submission) const;
     // Copies now into a staging area; takes effect before the next submit and after all earlier ones.
     void write(const Buffer& buffer, std::span<const std::byte> bytes, uint64_t offset = 0);

@@ -50,7 +50,7 @@ void vkCheck(VkResult result, const char* call, const std::string& label)
     case VK_ERROR_OUT_OF_DEVICE_MEMORY: throw Error("Out of device memory in {} (\"{}\").", call, label);
     case VK_ERROR_DEVICE_LOST:
         throw Error("The Vulkan device was lost in {} (\"{}\"): the driver gave up or was reset.", call, label);
-    default: checkFailed(__FILE__, __LINE__, fmt::format("{} of \"{}\" gave VkResult {}", call, label, int(result)));
+    default: throw Error("The Vulkan driver refuses {} (\"{}\") with VkResult {}.", call, label, int(result));
     }
 }
 
@@ -114,6 +114,7 @@ Instance::Instance(bool validation)
 
 Instance::~Instance()
 {
+    if (!instance_) return;
     if (messenger_) {
         const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
             vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));

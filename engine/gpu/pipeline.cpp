@@ -100,6 +100,7 @@ void compile(PipelineState& pipeline, std::span<const uint32_t> spirv, const std
     const VkShaderModule module = createModule(device, spirv, pipeline.label);
     const VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT, // for bands (encoder.cpp)
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
@@ -112,6 +113,9 @@ void compile(PipelineState& pipeline, std::span<const uint32_t> spirv, const std
         vkCreateComputePipelines(device.device, device.pipelineCache, 1, &info, nullptr, &pipeline.pipeline);
     pipeline.compileSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     vkDestroyShaderModule(device.device, module, nullptr);
+    if (result == VK_ERROR_UNKNOWN || result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_INVALID_SHADER_NV)
+        throw Error("The driver of \"{}\" cannot compile shader \"{}\" (VkResult {}).", device.physical.adapter.name,
+                    pipeline.label, int(result));
     vkCheck(result, "vkCreateComputePipelines", pipeline.label);
     device.name(VK_OBJECT_TYPE_PIPELINE, pipeline.pipeline, pipeline.label);
 }

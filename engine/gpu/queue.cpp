@@ -43,37 +43,66 @@ void DeviceState::wait(Submission submission)
                                       .semaphoreCount = 1,
                                       .pSemaphores = &timeline,
                                       .pValues = &submission};
-    vkCheck(waitSemaphores(device, &info, UINT64_MAX), "vkWaitSemaphores", "queue");
+    // Slow work may take its time as long as its command buffers come to their ends. (Queries would tell more, but
+    // lavapipe waits for the work when asked whether it is done.)
+    VkResult result = VK_TIMEOUT;
+    for (std::optional<Submission> before; result == VK_TIMEOUT;) {
+        result = waitSemaphores(device, &info, uint64_t(options.stallSeconds * 1e9));
+        if (result != VK_TIMEOUT) break;
+        const Submission now = finished();
+        if (now >= submission) break;
+        if (before == now) {
+            stalled = true;
+            const Flight& flight = *std::ranges::find_if(flights, [&](const Flight& f) { return f.submission > now; });
+            throw Error("The Vulkan device \"{}\" stalls in \"{}\": nothing was finished for {} s.",
+                        physical.adapter.name, flight.names[now + flight.names.size() - flight.submission],
+                        options.stallSeconds);
+        }
+        before = now;
+    }
+    if (result != VK_TIMEOUT) vkCheck(result, "vkWaitSemaphores", "queue");
     retire();
 }
 
 Submission DeviceState::submit(std::unique_ptr<EncoderState> encoder)
 {
     retire();
-    Flight flight = {.submission = submitted + 1, .stagingHead = ring.head};
+    Flight flight = {.stagingHead = ring.head};
     const std::unique_ptr<EncoderState> uploads = std::move(pendingWrites);
     for (EncoderState* part : {uploads.get(), encoder.get()}) {
         if (!part) continue;
         part->finish();
-        flight.commands.push_back(part->commands);
+        flight.commands.insert(flight.commands.end(), part->commands.begin(), part->commands.end());
+        flight.names.insert(flight.names.end(), part->names.begin(), part->names.end());
     }
 
-    const VkTimelineSemaphoreSubmitInfo values = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                                  .signalSemaphoreValueCount = 1,
-                                                  .pSignalSemaphoreValues = &flight.submission};
-    const VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                               .pNext = &values,
-                               .commandBufferCount = uint32_t(flight.commands.size()),
-                               .pCommandBuffers = flight.commands.data(),
-                               .signalSemaphoreCount = 1,
-                               .pSignalSemaphores = &timeline};
-    vkCheck(queueSubmit(vkQueue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit", encoder ? encoder->label : "writes");
+    // One batch for each command buffer: drivers watch the time of batches, and each tells that it is done.
+    const size_t count = std::max<size_t>(flight.commands.size(), 1);
+    flight.names.resize(count, "nothing");
+    std::vector<uint64_t> values(count);
+    std::vector<VkTimelineSemaphoreSubmitInfo> signals(count);
+    std::vector<VkSubmitInfo> batches(count);
+    for (size_t i = 0; i < count; ++i) {
+        values[i] = submitted + 1 + i;
+        signals[i] = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                      .signalSemaphoreValueCount = 1,
+                      .pSignalSemaphoreValues = &values[i]};
+        batches[i] = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                      .pNext = &signals[i],
+                      .commandBufferCount = flight.commands.empty() ? 0u : 1u,
+                      .pCommandBuffers = flight.commands.empty() ? nullptr : &flight.commands[i],
+                      .signalSemaphoreCount = 1,
+                      .pSignalSemaphores = &timeline};
+    }
+    flight.submission = values.back();
+    vkCheck(queueSubmit(vkQueue, uint32_t(count), batches.data(), VK_NULL_HANDLE), "vkQueueSubmit",
+            encoder ? encoder->label : "writes");
     submitted = flight.submission;
 
     // The flight owns from here on what the encoders held.
-    if (uploads) uploads->commands = VK_NULL_HANDLE;
+    if (uploads) uploads->commands.clear();
     if (encoder) {
-        encoder->commands = VK_NULL_HANDLE;
+        encoder->commands.clear();
         flight.timestamps = std::exchange(encoder->timestamps, {});
     }
     flights.push_back(std::move(flight));
@@ -107,25 +136,25 @@ void DeviceState::retire()
 void DeviceState::collect(const Flight& flight)
 {
     if (timings.size() > MAX_TIMINGS) timings.erase(timings.begin(), timings.begin() + MAX_TIMINGS / 2);
-    const std::vector<std::string>& labels = flight.timestamps.labels;
     const uint32_t bits = physical.timestampBits;
     const uint64_t mask = bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
     const size_t first = timings.size();
-    for (size_t i = 0; i < labels.size(); ++i) {
+    for (size_t i = 0; i < flight.timestamps.dispatches.size(); ++i) {
+        const Timestamps::Timed& dispatch = flight.timestamps.dispatches[i];
         std::array<uint64_t, 2> ticks = {};
-        const VkQueryPool page = flight.timestamps.pages[i / Timestamps::DISPATCHES_PER_PAGE];
-        const uint32_t query = uint32_t(2 * (i % Timestamps::DISPATCHES_PER_PAGE));
-        vkCheck(vkGetQueryPoolResults(device, page, query, 2, sizeof(ticks), ticks.data(), sizeof(uint64_t),
+        vkCheck(vkGetQueryPoolResults(device, flight.timestamps.page(i), Timestamps::query(i), 2, sizeof(ticks),
+                                      ticks.data(), sizeof(uint64_t),
                                       VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-                "vkGetQueryPoolResults", labels[i]);
+                "vkGetQueryPoolResults", dispatch.label);
         const double milliseconds =
             double((ticks[1] - ticks[0]) & mask) * double(properties.limits.timestampPeriod) * 1e-6;
+        groupMilliseconds[dispatch.label] = milliseconds / double(dispatch.groups);
         const auto same = std::find_if(timings.begin() + std::ptrdiff_t(first), timings.end(),
-                                       [&](const Timing& t) { return t.label == labels[i]; });
+                                       [&](const Timing& t) { return t.label == dispatch.label; });
         if (same != timings.end())
             same->milliseconds += milliseconds;
         else
-            timings.push_back({labels[i], milliseconds});
+            timings.push_back({dispatch.label, milliseconds});
     }
 }
 

@@ -26,12 +26,13 @@ class Instance
 {
   public:
     explicit Instance(bool validation); // throws Error: no driver, no validation layer
-    ~Instance();
+    ~Instance();                        // unless abandoned
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
 
     VkInstance handle() const { return instance_; }
-    bool canName() const { return canName_; } // VK_EXT_debug_utils
+    void abandon() { instance_ = VK_NULL_HANDLE; } // left to the end of the process
+    bool canName() const { return canName_; }      // VK_EXT_debug_utils
     std::vector<std::string> takeMessages();
     void addMessage(const std::string& message); // from any thread
 
@@ -103,12 +104,23 @@ struct BindGroupState {
     std::map<uint32_t, VkBuffer> buffers; // by binding
 };
 
-// Timestamps around the dispatches of one command buffer, in pages of fixed size. Dispatch i has queries 2i and 2i + 1.
+// Timestamps around the dispatches of one encoder, in pages of fixed size. Dispatch i has queries 2i and 2i + 1.
 struct Timestamps {
     static constexpr uint32_t DISPATCHES_PER_PAGE = 64;
+    struct Timed {
+        std::string label;
+        uint64_t groups = 0;
+    };
     std::vector<VkQueryPool> pages;
-    std::vector<std::string> labels;
+    std::vector<Timed> dispatches;
+    VkQueryPool page(size_t dispatch) const { return pages[dispatch / DISPATCHES_PER_PAGE]; }
+    static uint32_t query(size_t dispatch) { return uint32_t(2 * (dispatch % DISPATCHES_PER_PAGE)); } // its begin
 };
+
+// Drivers of graphics cards reset a device whose work takes seconds, and a desktop on it freezes meanwhile. So long
+// dispatches are cut into bands of workgroups, and long command buffers into several, each submitted on its own.
+constexpr double LONGEST_MILLISECONDS = 500; // that a command buffer is expected to take
+constexpr uint32_t FIRST_BANDS = 16;         // of a dispatch whose time is not known yet
 
 struct EncoderState {
     EncoderState(DeviceState& owner, const std::string& label);
@@ -124,18 +136,26 @@ struct EncoderState {
 
     DeviceState* device;
     std::string label;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
+    std::vector<VkCommandBuffer> commands; // the last one is being recorded
+    std::vector<std::string> names;        // of the dispatches in each, or the encoder's
     HazardTracker<VkBuffer> hazards;
     Timestamps timestamps;
 
   private:
+    void begin(); // the next command buffer
+    void dispatchInBands(const PipelineState& pipeline, const Dispatch& dispatch, const std::array<uint32_t, 3>& groups,
+                         const std::string& name);
     void timestamp(uint32_t query);
+    VkCommandBuffer current() const { return commands.back(); }
+
+    double milliseconds_ = 0; // that the current command buffer is expected to take
 };
 
 // Work that the queue has been given and that is not known to be done.
 struct Flight {
     Submission submission = 0;
-    std::vector<VkCommandBuffer> commands;
+    std::vector<VkCommandBuffer> commands; // at least one submission each; the last one is `submission`
+    std::vector<std::string> names;        // of what each does
     Timestamps timestamps;
     uint64_t stagingHead = 0; // the ring is free up to here once this has finished
 };
@@ -207,13 +227,15 @@ struct DeviceState {
     std::vector<VkCommandBuffer> freeCommandBuffers;
     std::vector<VkQueryPool> freeQueryPages;
     std::vector<Timing> timings;
+    std::map<std::string, double> groupMilliseconds; // of a workgroup, last time, by the dispatch's label
+    bool stalled = false;                            // for good: nothing can be waited for or destroyed
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;
     std::unique_ptr<BufferState> staging;
     std::mutex setLayoutsMutex; // pipelines are created by several threads
     std::map<std::map<uint32_t, VkDescriptorType>, VkDescriptorSetLayout> setLayouts;
 
-    // Replaceable, so that a test can lose the device.
+    // Replaceable, so that a test can lose the device. (tests/support/faults.cpp makes any call fail.)
     PFN_vkQueueSubmit queueSubmit = vkQueueSubmit;
     PFN_vkWaitSemaphores waitSemaphores = vkWaitSemaphores;
     PFN_vkCmdBeginDebugUtilsLabelEXT beginLabel = nullptr;
@@ -221,6 +243,9 @@ struct DeviceState {
     PFN_vkSetDebugUtilsObjectNameEXT setName = nullptr;
 
   private:
+    struct WithoutDevice {
+    };
+    DeviceState(const DeviceDescriptor& descriptor, WithoutDevice);
     void collect(const Flight& flight);
 };
 

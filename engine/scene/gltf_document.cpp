@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
 #include "engine/scene/gltf_json_checks.h"
 #include "engine/scene/gltf_uri.h"
 
@@ -18,7 +19,6 @@ namespace
 {
 
 constexpr uint64_t MAX_FILE_BYTES = uint64_t{1} << 31;
-constexpr size_t MAX_JSON_DEPTH = 128; // glTF itself needs about 10; everything below recurses at most this deep
 
 struct Container {
     std::span<const std::byte> json;
@@ -58,40 +58,6 @@ Container openBinary(std::span<const std::byte> bytes)
         offset += std::min<size_t>((chunkLength + size_t{3}) / 4 * 4, bytes.size() - offset);
     }
     return container;
-}
-
-// Before any parser sees it, since some recurse.
-void checkDepth(std::string_view text)
-{
-    size_t depth = 0;
-    bool inString = false;
-    for (size_t i = 0; i < text.size(); ++i) {
-        if (inString) {
-            if (text[i] == '\\')
-                ++i;
-            else if (text[i] == '"')
-                inString = false;
-        } else if (text[i] == '"') {
-            inString = true;
-        } else if (text[i] == '[' || text[i] == '{') {
-            if (++depth > MAX_JSON_DEPTH) throw Error("The JSON is nested deeper than {} levels.", MAX_JSON_DEPTH);
-        } else if ((text[i] == ']' || text[i] == '}') && depth > 0) {
-            --depth;
-        }
-    }
-}
-
-Json parseJson(std::span<const std::byte> bytes)
-{
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    checkDepth(text);
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& exception) {
-        std::string reason = exception.what(); // "[json.exception.parse_error.101] parse error at line 1, ..."
-        reason = reason.substr(std::min(reason.find("] ") + 2, reason.size()));
-        throw Error("The JSON is malformed: {}.", shown(reason, 200));
-    }
 }
 
 std::vector<std::vector<std::byte>> readBuffers(const Object& document, const std::filesystem::path& folder,
@@ -192,7 +158,7 @@ Document openDocument(const std::filesystem::path& file, Warnings& warnings)
     const bool isBinary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
     const Container container = isBinary ? openBinary(bytes) : Container{bytes, std::nullopt};
 
-    Json json = parseJson(container.json);
+    Json json = parseJson<Json>(container.json);
     checkJson(json);
     const Object root(json);
     Document document{.folder = file.parent_path(), .model = {}, .buffers = {}, .images = listImages(root)};

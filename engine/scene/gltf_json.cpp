@@ -12,22 +12,11 @@ std::string shown(const Json& value)
 {
     if (value.is_object()) return "an object";
     if (value.is_array()) return fmt::format("an array of {}", value.size());
-    if (value.is_string()) return fmt::format("\"{}\"", gltf::shown(value.get_ref<const std::string&>()));
+    if (value.is_string()) return fmt::format("\"{}\"", ::shown(value.get_ref<const std::string&>()));
     return value.dump();
 }
 
 } // namespace
-
-std::string shown(const std::string& text, size_t maxLength)
-{
-    size_t length = std::min(text.size(), maxLength);
-    while (length < text.size() && length > 0 && (text[length] & 0xc0) == 0x80) --length; // whole UTF-8 characters
-    std::string result = text.substr(0, length);
-    for (char& c : result) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
-    return length < text.size() ? result + "..." : result;
-}
 
 Object::Object(const Json& document) : root_(this), json_(&document)
 {
@@ -45,7 +34,7 @@ std::string Object::path(const std::string& key) const
     std::string result = parent_ ? parent_->path(key_) : std::string();
     if (index_ != NO_INDEX) result += fmt::format("[{}]", index_);
     if (key.empty()) return result.empty() ? "The JSON document" : result;
-    return result.empty() ? gltf::shown(key) : result + "." + gltf::shown(key);
+    return result.empty() ? ::shown(key) : result + "." + ::shown(key);
 }
 
 const Json* Object::find(const std::string& key) const

@@ -8,14 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/shown.h"
 
 namespace scene::gltf
 {
 
 using Json = nlohmann::json;
-
-// A string of the file as it may be shown: shortened, control characters replaced.
-std::string shown(const std::string& text, size_t maxLength = 60);
 
 // A JSON object and where it stands. A child refers to its parent: live on the stack only.
 class Object

@@ -1,5 +1,7 @@
 #include "engine/scene/gpu_scene.h"
 
+#include "engine/base/fingerprint.h"
+
 namespace scene
 {
 
@@ -27,6 +29,10 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
           device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform}))
 {
     device.queue().writeValue(uniform_, tables.uniform);
+    for (const std::vector<glm::uvec4>* rows :
+         {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels, &tables.sceneData})
+        contents_ = fingerprint(std::as_bytes(std::span(*rows)), contents_);
+    contents_ = fingerprint(std::as_bytes(std::span(&tables.uniform, 1)), contents_);
 }
 
 gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const

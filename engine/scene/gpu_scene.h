@@ -14,10 +14,12 @@ class GpuScene
     GpuScene(gpu::Device& device, const SceneTables& tables);
 
     gpu::BindGroup bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const;
-    uint64_t bytes() const; // on the device
+    uint64_t bytes() const;                         // on the device
+    uint64_t contents() const { return contents_; } // a fingerprint of all of it: equal scenes have equal ones
 
   private:
     gpu::Buffer nodes_, triangles_, attributes_, texels_, sceneData_, uniform_;
+    uint64_t contents_ = 0;
 };
 
 } // namespace scene

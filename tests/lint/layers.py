@@ -35,7 +35,7 @@ ALLOWED = {
 
 # Header of a library -> the only places that may include it.
 CONFINED = {
-    r"vulkan/": ["engine/gpu", "ui/window", "tests/engine/gpu"],
+    r"vulkan/": ["engine/gpu", "ui/window", "tests/engine/gpu", "tests/faults"],
     r"(imgui|imgui_\w+)\.h|GLFW/": ["ui/window"],
     r"embree3/": ["engine/scene/bvh", "tests"],
     r"mpi\.h": ["ui/ranks_mpi.cpp"],

@@ -4,7 +4,6 @@
 #include "engine/base/files.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
@@ -33,9 +32,9 @@ Outcome runProgram(const std::filesystem::path& program, const Launch& launch)
     const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failure != 0) throw Error("Cannot run \"{}\" (errno {}).", program.string(), failure);
-    if (launch.interruptAfter.count() > 0) {
-        std::this_thread::sleep_for(launch.interruptAfter);
-        kill(child, SIGINT);
+    if (launch.signalAfter.count() > 0) {
+        std::this_thread::sleep_for(launch.signalAfter);
+        kill(child, launch.signal);
     }
     int status = 0;
     waitpid(child, &status, 0);

@@ -2,6 +2,7 @@
 // Runs the built executable as a person would: arguments in; exit code, output and files out.
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct Outcome {
 
 struct Launch {
     std::vector<std::string> arguments;
-    std::chrono::milliseconds interruptAfter{0}; // above 0: SIGINT then, as Ctrl-C sends it
+    std::chrono::milliseconds signalAfter{0}; // above 0: the signal is sent then
+    int signal = SIGINT;                      // as Ctrl-C sends it
 };
 Outcome runProgram(const std::filesystem::path& program, const Launch& launch);
 

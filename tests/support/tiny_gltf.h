@@ -50,6 +50,7 @@ class TinyGltf
     nlohmann::json& material(); // of the triangle; made on first use
 
     scene::Scene load(const scene::LoadOptions& options = {}) const;
+    std::string text() const;  // one self-contained .gltf file
     std::string error() const; // what load() throws, without the file's name; "" when it does not
     bool warns(const std::string& sentence) const;
 

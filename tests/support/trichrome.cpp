@@ -15,9 +15,9 @@ std::string deviceName()
 }
 
 // It lies beside the tests' own executables.
-std::filesystem::path executable()
+std::filesystem::path executable(const std::string& name)
 {
-    return std::filesystem::read_symlink("/proc/self/exe").replace_filename("trichrome");
+    return std::filesystem::read_symlink("/proc/self/exe").replace_filename(name);
 }
 
 bool isIn(const std::vector<std::string>& words, const std::string& word)
@@ -27,11 +27,13 @@ bool isIn(const std::vector<std::string>& words, const std::string& word)
 
 } // namespace
 
-Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter)
+Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter, int signal,
+                       const std::string& program)
 {
     if (arguments.size() > 1 && arguments[0] != "compare" && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
         arguments.insert(arguments.end(), {"--device", deviceName()});
-    return runProgram(executable(), {.arguments = std::move(arguments), .interruptAfter = interruptAfter});
+    return runProgram(executable(program),
+                      {.arguments = std::move(arguments), .signalAfter = signalAfter, .signal = signal});
 }
 
 Outcome Trichrome::runWell(const std::vector<std::string>& arguments)

@@ -8,8 +8,9 @@
 class Trichrome : public testing::Test
 {
   protected:
-    // Adds --device to commands that take it.
-    static Outcome run(std::vector<std::string> arguments, std::chrono::milliseconds interruptAfter = {});
+    // Adds --device to commands that take it. Sends the signal (default: Ctrl-C) after a time above 0.
+    static Outcome run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter = {},
+                       int signal = SIGINT, const std::string& program = "trichrome");
 
     // Expects exit code 0 and nothing on stderr.
     static Outcome runWell(const std::vector<std::string>& arguments);

@@ -1,5 +1,7 @@
 #include "ui/cli/device_options.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 
 namespace ui
@@ -23,11 +25,21 @@ void DeviceOptions::addTo(CLI::App& app)
     app.add_option("--shaders", shaders_,
                    "For development: compile the shaders of this directory instead of using those in the executable.")
         ->option_text("DIRECTORY");
+    app.add_option(
+           "--stall-timeout", stall_,
+           "Give up, naming the stage, when the device finishes nothing for so long. Long dispatches are cut into "
+           "pieces of about half a second.")
+        ->option_text(fmt::format("1 to 86400 s ({})", stall_))
+        ->check(CLI::Range(1.0, 86400.0));
 }
 
-gpu::Device DeviceOptions::open() const
+gpu::Device DeviceOptions::open(bool robust) const
 {
-    return gpu::Device::create({.adapter = device_, .shaderDirectory = shaders_, .cacheDirectory = cacheDirectory()});
+    return gpu::Device::create({.adapter = device_,
+                                .shaderDirectory = shaders_,
+                                .cacheDirectory = cacheDirectory(),
+                                .stallSeconds = stall_,
+                                .robust = robust});
 }
 
 } // namespace ui

@@ -17,11 +17,12 @@ class DeviceOptions
 {
   public:
     void addTo(CLI::App& app);                                      // must live until the options are read
-    gpu::Device open() const;                                       // throws Error
+    gpu::Device open(bool robust = false) const;                    // throws Error
     const std::string& shaderDirectory() const { return shaders_; } // empty: the embedded ones
 
   private:
     std::string device_, shaders_;
+    double stall_ = gpu::DeviceDescriptor().stallSeconds;
 };
 
 } // namespace ui

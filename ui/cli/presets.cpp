@@ -1,12 +1,11 @@
 #include "ui/cli/presets.h"
 
-#include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
 
 #include <algorithm>
 
 #include <generated_presets.h>
-#include <nlohmann/json.hpp>
 
 namespace ui
 {
@@ -37,11 +36,8 @@ void applyPreset(passes::Settings& settings, const std::string& nameOrFile)
 {
     whileDoing(fmt::format("reading preset \"{}\"", nameOrFile), [&] {
         passes::Settings changed = settings;
-        try {
-            passes::apply(changed, nlohmann::ordered_json::parse(textOf(nameOrFile)));
-        } catch (const nlohmann::json::parse_error& error) {
-            throw Error("The preset is not JSON: {}.", error.what());
-        }
+        const std::string text = textOf(nameOrFile);
+        passes::apply(changed, parseJson(std::as_bytes(std::span(text))));
         settings = changed;
     });
 }

@@ -1,6 +1,7 @@
 // compare REFERENCE IMAGE...: error figures and difference pictures; with limits, a gate.
 
 #include "engine/base/error.h"
+#include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 #include "ui/commands/commands.h"
 #include "ui/report/comparison_page.h"
@@ -111,7 +112,7 @@ int CompareCommand::run() const
         pictures.push_back(std::move(picture));
     }
 
-    if (!json.empty()) writeText(json, facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (!json.empty()) writeText(json, jsonText(facts, 2) + "\n");
     if (!html.empty()) writeText(html, comparisonPage(first, pictures, failures, commandLine()));
     printTable(pictures);
     for (const std::string& failure : failures) std::fprintf(stderr, "trichrome: %s\n", failure.c_str());

@@ -1,6 +1,6 @@
 // converge SCENE -o DIR: error against run time for several methods, as CSV, SVG and one page.
 
-#include "engine/base/hash.h"
+#include "engine/base/fingerprint.h"
 #include "passes/race.h"
 #include "passes/reference.h"
 #include "ui/cli/device_options.h"
@@ -104,8 +104,8 @@ std::string ConvergeCommand::keyOf(const ConvergeReport& report, const passes::R
                                       fmt::format("{} {}", limits.frames, limits.seconds)};
     for (const auto& [name, value] : motion.toText()) facts.insert(facts.end(), {name, value, stampOf(value)});
     for (const NamedMethod& method : report.methods) facts.push_back(method.name + " " + hash(method.settings));
-    uint64_t state = FNV_START;
-    for (const std::string& fact : facts) state = fnv1a(std::string_view(fact), state);
+    uint64_t state = 0;
+    for (const std::string& fact : facts) state = fingerprint(std::string_view(fact), state);
     return fmt::format("{:016x}", state);
 }
 

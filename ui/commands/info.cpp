@@ -1,5 +1,6 @@
 // info [SCENE]: devices; the built-in scenes; or what a scene holds and what is compiled for it.
 
+#include "engine/base/json.h"
 #include "engine/scene/procedural.h"
 #include "passes/renderer.h"
 #include "passes/variant.h"
@@ -76,7 +77,7 @@ void printDevices(const Json& devices)
                           device["name"].get<std::string>(), device["kind"].get<std::string>(),
                           device["driver"].get<std::string>(), device["api_version"].get<std::string>()));
         for (const auto& [name, value] : device["limits"].items())
-            print(fmt::format("    {:<28}{}", name, value.dump()));
+            print(fmt::format("    {:<28}{}", name, jsonText(value)));
     }
 }
 
@@ -141,7 +142,7 @@ void printScene(const Json& scene, const passes::Settings& settings)
     for (const auto& [kind, count] : scene["lights"].items())
         if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
     print("Lights: " + lights);
-    print("Cameras: " + scene["cameras"].dump());
+    print("Cameras: " + jsonText(scene["cameras"]));
     print(fmt::format("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s",
                       bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
                       bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>()));
@@ -183,7 +184,7 @@ int InfoCommand::run() const
         facts["scene"] = sceneJson(scene, world, renderer.stats());
         printScene(facts["scene"], chosen);
     }
-    if (!json.empty()) writeText(json, facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (!json.empty()) writeText(json, jsonText(facts, 2) + "\n");
     return 0;
 }
 

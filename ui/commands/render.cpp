@@ -1,6 +1,8 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
+#include "engine/base/json.h"
 #include "passes/renderer.h"
+#include "ui/cli/checkpoint_options.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
 #include "ui/cli/motion_options.h"
@@ -10,8 +12,6 @@
 #include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
 #include "ui/commands/commands.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cstdio>
@@ -33,52 +33,57 @@ struct RenderCommand {
     bool quiet = false;
     DeviceOptions device;
     MotionOptions motion;
+    CheckpointOptions checkpoint;
     SettingsOptions settings;
 
-    int run() const;
+    int run();
 };
 
 // Until the settings say stop, or Ctrl-C does.
-void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, Progress& progress, RunReport& report,
-                  std::chrono::steady_clock::time_point commandStart)
+void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, CheckpointOptions& checkpoint,
+                  Progress& progress, RunReport& report, std::chrono::steady_clock::time_point commandStart)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
     const Interrupt interrupt;
+    const double before = checkpoint.start(renderer, report);
     const auto start = std::chrono::steady_clock::now();
-    double elapsed = 0;
+    double elapsed = before;
+    report.frames = renderer.frameCount();
     const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
-    do {
+    while (report.frames == 0 || !(finished() || interrupt.requested())) {
         if (cameraAt) renderer.setCamera(cameraAt(report.frames));
         renderer.renderFrame();
         report.frames = renderer.frameCount();
-        if (report.frames == 1) {
+        if (report.firstPixelSeconds == 0) {
             renderer.wait();
             report.firstPixelSeconds = secondsSince(commandStart);
         }
-        elapsed = secondsSince(start);
+        elapsed = before + secondsSince(start);
+        checkpoint.keep(renderer, elapsed);
         if (byTime)
             progress.show("Rendering", elapsed, wanted.seconds);
         else
             progress.show("Rendering", double(report.frames), wanted.frames, "frames");
-    } while (!finished() && !interrupt.requested());
+    }
     renderer.wait();
-    report.wallSeconds = secondsSince(start);
+    report.wallSeconds = before + secondsSince(start);
     report.partial = !finished();
     progress.clear();
 }
 
-int RenderCommand::run() const
+int RenderCommand::run()
 {
     const auto commandStart = std::chrono::steady_clock::now();
     RunReport report{.scene = scene, .settings = settings.read(), .extra = motion.toText()};
     motion.adjust(report.settings, settings);
     requireWritable(output, {".exr", ".png"});
     if (!stats.empty()) requireWritable(stats);
+    checkpoint.requireWritable();
 
     Progress progress(quiet);
     const auto loadStart = std::chrono::steady_clock::now();
-    gpu::Device gpu = device.open();
+    gpu::Device gpu = device.open(checkpoint.resumes());
     const scene::Scene world = openScene(scene, report.settings, progress);
     const passes::CameraAt cameraAt = motion.read(world, report.settings);
     report.adapter = gpu.adapter();
@@ -86,18 +91,19 @@ int RenderCommand::run() const
     passes::Renderer renderer(gpu, world, report.settings,
                               [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
 
-    renderFrames(renderer, cameraAt, progress, report, commandStart);
+    renderFrames(renderer, cameraAt, checkpoint, progress, report, commandStart);
+    const bool kept = checkpoint.finish(renderer, report.wallSeconds);
     const image::Image picture = renderer.readColor();
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
     image::write(output, picture, metadataOf(report));
-    if (!stats.empty()) writeText(stats, toJson(report).dump(2) + "\n");
+    if (!stats.empty()) writeText(stats, jsonText(toJson(report), 2) + "\n");
 
     for (const auto& [stage, count] : report.stats.nonFinite)
         if (count > 0)
             std::fprintf(stderr, "Warning: stage %s found %llu values that are not finite and counted them as 0.\n",
                          stage.c_str(), static_cast<unsigned long long>(count));
-    if (!report.partial) return 0;
+    if (!report.partial) return kept ? 0 : 1;
     std::fprintf(stderr, "Interrupted: %s is partial, marked so, with %llu frames.\n", output.c_str(),
                  static_cast<unsigned long long>(report.frames));
     return EXIT_INTERRUPTED;
@@ -119,6 +125,7 @@ Action setUpRender(CLI::App& app)
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);
     command->motion.addTo(app);
+    command->checkpoint.addTo(app);
     command->settings.addTo(app);
     return [command] { return command->run(); };
 }

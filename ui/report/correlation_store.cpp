@@ -2,6 +2,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
+#include "engine/base/shown.h"
 #include "ui/cli/output_file.h"
 
 #include <cstring>
@@ -16,6 +18,33 @@ namespace
 
 using Json = nlohmann::ordered_json;
 constexpr const char* EXTENSION = ".cbor";
+
+// Throws Error unless the bytes are CBOR as we write it: the parser recurses, so nesting is bounded, and what else
+// makes it recurse (tags, strings in pieces) is refused.
+void checkCbor(const Bytes& bytes)
+{
+    constexpr size_t MAX_DEPTH = 16;
+    std::vector<uint64_t> open = {1}; // items to come, of each array or object that is not complete
+    for (size_t at = 0; !open.empty();) {
+        if (open.back() == 0) {
+            open.pop_back();
+            continue;
+        }
+        --open.back();
+        const auto next = [&] { return at < bytes.size() ? uint32_t(bytes[at++]) : throw Error("It is cut short."); };
+        const uint32_t first = next(), kind = first >> 5, size = first & 31;
+        if (kind == 6 || size > 27) throw Error("It holds a byte {:#x}, which batches do not.", first);
+        uint64_t count = size < 24 ? size : 0;
+        for (int left = size < 24 ? 0 : 1 << (size - 24); left > 0; --left) count = count << 8 | next();
+        if (kind == 2 || kind == 3) { // bytes, text
+            if (count > bytes.size() - at) throw Error("It is cut short.");
+            at += count;
+        } else if (kind == 4 || kind == 5) { // an array, an object
+            if (count > bytes.size() - at || open.size() >= MAX_DEPTH) throw Error("It is cut short or nested deeply.");
+            open.push_back(kind == 4 ? count : 2 * count);
+        }
+    }
+}
 
 Json toJson(const statistics::BatchValue& value)
 {
@@ -68,6 +97,7 @@ Bytes toBytes(const CorrelationBatch& batch)
 
 CorrelationBatch fromBytes(const Bytes& bytes)
 {
+    checkCbor(bytes);
     try {
         const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
         const Json json = Json::from_cbor(data, data + bytes.size());
@@ -99,7 +129,7 @@ void CorrelationStore::open(const std::vector<std::pair<std::string, std::string
         std::filesystem::create_directories(path_, ignored);
         if (!std::filesystem::is_directory(path_, ignored))
             throw Error("Cannot make the directory \"{}\".", path_.string());
-        writeText(file, wanted.dump(2) + "\n");
+        writeText(file, jsonText(wanted, 2) + "\n");
         return;
     }
     const std::string directory = path_.parent_path().string();
@@ -107,12 +137,11 @@ void CorrelationStore::open(const std::vector<std::pair<std::string, std::string
         throw Error("\"{}\" holds a measurement already: --resume goes on with it, or name another directory.",
                     directory);
     const std::vector<std::byte> bytes = files::read(file);
-    const auto* text = reinterpret_cast<const char*>(bytes.data());
-    const Json found = Json::parse(text, text + bytes.size(), nullptr, false);
+    const Json found = parseJson(bytes);
     for (const auto& [name, value] : wanted.items())
         if (!found.is_object() || found.value(name, Json()) != value)
             throw Error("\"{}\" cannot be resumed: it was measured with {} = {}, not {}.", directory, name,
-                        found.is_object() ? found.value(name, Json()).dump() : "?", value.dump());
+                        found.is_object() ? shown(jsonText(found.value(name, Json()))) : "?", jsonText(value));
 }
 
 void CorrelationStore::save(const CorrelationBatch& batch) const

@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 #include "ui/report/csv.h"
 
@@ -89,7 +90,7 @@ void RaceStore::write(size_t index, const passes::Repeat& repeat) const
     createDirectory(directory_ / "repeats");
     Json json = {{"key", key_}, {"repeat", index}, {"nonfinite", repeat.nonFinite}, {"samples", Json::array()}};
     for (const passes::Sample& sample : repeat.samples) json["samples"].push_back(jsonOf(sample));
-    writeText(file(index), json.dump() + "\n");
+    writeText(file(index), jsonText(json) + "\n");
 }
 
 std::vector<passes::Repeat> RaceStore::read(size_t limit) const
@@ -99,8 +100,7 @@ std::vector<passes::Repeat> RaceStore::read(size_t limit) const
         const std::string name = file(index).string();
         const std::vector<std::byte> bytes = files::read(file(index), MAX_FILE_BYTES);
         try {
-            const char* text = reinterpret_cast<const char*>(bytes.data());
-            const Json json = Json::parse(text, text + bytes.size());
+            const Json json = parseJson(bytes);
             if (json.at("key").get<std::string>() != key_)
                 throw Error("Cannot resume: \"{}\" holds a run of other settings, another scene, device or version.",
                             directory_.string());

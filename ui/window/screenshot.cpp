@@ -1,5 +1,6 @@
 #include "ui/window/screenshot.h"
 
+#include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/run_report.h"
 
@@ -50,10 +51,10 @@ std::string takeScreenshot(const Shot& shot)
     std::string camera;
     if (shot.order.pose) {
         camera = name + ".camera.json";
-        writeText(camera, toCameraPath(*shot.order.pose).dump(2) + "\n");
+        writeText(camera, jsonText(toCameraPath(*shot.order.pose), 2) + "\n");
         report.extra = {{"camera-path", camera}};
     }
-    writeText(name + ".json", passes::toJson(report.settings).dump(2) + "\n");
+    writeText(name + ".json", jsonText(passes::toJson(report.settings), 2) + "\n");
     image::write(name + ".png", shot.picture, metadataOf(report));
     image::write(name + ".exr", shot.picture, metadataOf(report));
 

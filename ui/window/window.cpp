@@ -1,6 +1,7 @@
 #include "ui/window/window.h"
 
 #include "engine/base/error.h"
+#include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/presets.h"
 #include "ui/window/camera_hands.h"
@@ -25,7 +26,6 @@
 #include <GLFW/glfw3.h>
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_vulkan.h>
-#include <nlohmann/json.hpp>
 
 namespace ui
 {
@@ -343,7 +343,7 @@ class Window
         json["line"] = line_;
         json["presents_on"] = presenter_->deviceName();
         json["answer_ms"] = {{"p50", percentile(0.5)}, {"p99", percentile(0.99)}};
-        writeText(options_.report, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        writeText(options_.report, jsonText(json, 2) + "\n");
     }
 
     WindowOptions options_;

@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 
 #include <algorithm>
@@ -66,8 +67,7 @@ WindowMemory recall(const std::string& file)
 {
     try {
         const std::vector<std::byte> bytes = files::read(file, MAX_BYTES);
-        const char* text = reinterpret_cast<const char*>(bytes.data());
-        const Json json = Json::parse(text, text + bytes.size());
+        const Json json = parseJson(bytes);
         WindowMemory memory;
         for (size_t i = 0; i < 2; ++i) memory.size[i] = std::clamp(json.at("size").at(i).get<int>(), SMALLEST, LARGEST);
         memory.layout = json.at("layout");
@@ -92,7 +92,7 @@ void keep(const WindowMemory& memory, const std::string& file)
     std::error_code failure;
     std::filesystem::create_directories(std::filesystem::path(file).parent_path(), failure);
     if (failure) throw Error("The folder of \"{}\" cannot be made: {}.", file, failure.message());
-    writeText(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    writeText(file, jsonText(json, 2) + "\n");
 }
 
 } // namespace ui

@@ -12,12 +12,15 @@ TEST(Files, WriteThenReadGivesTheSameBytes)
     files::writeAtomically(path, bytes);
     EXPECT_EQ(files::read(path), bytes);
     EXPECT_THROW(files::read(path, 2), Error);
+    const files::Bytes pieces[] = {std::span(bytes).first(1), {}, std::span(bytes).subspan(1)};
+    files::writeAtomically(path, pieces);
+    EXPECT_EQ(files::read(path), bytes);
     std::filesystem::remove(path);
     EXPECT_THROW(files::read(path), Error);
 }
 
 TEST(Files, WritingIntoAMissingFolderIsAnErrorAndLeavesNothing)
 {
-    EXPECT_THROW(files::writeAtomically("/nonexistent/x", {}), Error);
+    EXPECT_THROW(files::writeAtomically("/nonexistent/x", files::Bytes()), Error);
     EXPECT_THROW(files::read("/dev/zero"), Error);
 }

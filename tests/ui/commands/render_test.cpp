@@ -3,6 +3,7 @@
 #include "tests/support/trichrome.h"
 
 #include "engine/image/image.h"
+#include "tests/support/tiny_gltf.h"
 
 #include <map>
 
@@ -68,7 +69,7 @@ TEST_F(Render, RefusesAWrongWorldWithExitCode1)
     expectRefusal(small(out, {"--preset", "missing.json"}), 1, "missing.json");
     const std::string preset = directory / "preset.json";
     for (const auto& [text, part] : std::map<std::string, std::string>{
-             {"{", "not JSON"}, {"[]", "object"}, {R"({"frames": "many"})", "frames"}, {R"({"spam": 1})", "spam"}}) {
+             {"{", "malformed"}, {"[]", "object"}, {R"({"frames": "many"})", "frames"}, {R"({"spam": 1})", "spam"}}) {
         writeFile(preset, text);
         expectRefusal(small(out, {"--preset", preset}), 1, part);
     }
@@ -87,6 +88,19 @@ TEST_F(Render, EqualSettingsAndSeedsGiveEqualPixelsAndOtherSeedsOthers)
     EXPECT_EQ(readFile(first), readFile(second)); // and equal files: no times inside
     EXPECT_NE(pixels(first), pixels(other));
     EXPECT_EQ(directory.entries().size(), 3u); // no temporary file is left
+}
+
+TEST_F(Render, AFileWhoseNameIsNoUtf8IsAsGoodAsAny)
+{
+    const std::string scene = directory / "h\xffll.gltf", stats = directory / "stats.json";
+    TinyGltf file;
+    writeFile(scene, file.text());
+    for (const std::string& out : {directory / "a.exr", directory / "b.png"})
+        EXPECT_EQ(run({"render", scene, "-o", out, "--size", "8x8", "--frames", "1", "--stats", stats, "--checkpoint",
+                       directory / "x.ckpt"})
+                      .exitCode,
+                  0);
+    EXPECT_TRUE(readJson(stats)["scene"].get<std::string>().ends_with("h\uFFFDll.gltf"));
 }
 
 TEST_F(Render, AverageOffWritesTheLastFrameOnly)

@@ -1,0 +1,49 @@
+// Taking a renderer's state out and putting it back.
+
+#include "passes/renderer.h"
+
+#include "engine/base/error.h"
+
+namespace passes
+{
+
+// What a frame leaves behind. All other buffers are written before they are read within each frame.
+std::vector<gpu::Buffer*> Renderer::lastingBuffers()
+{
+    if (settings_.method == Method::Pt) return {&counters_, &film_, &color_};
+    return {&counters_, &film_, &color_, &surfaces_, &history_, &historyPaths_};
+}
+
+RendererState Renderer::save()
+{
+    wait();
+    RendererState state{.frames = frameCount_,
+                        .historyFrames = historyFrames_,
+                        .camera = frame_.camera,
+                        .previousCamera = frame_.previousCamera};
+    for (const gpu::Buffer* buffer : lastingBuffers())
+        state.buffers.emplace_back(buffer->label(), device_.queue().read(*buffer));
+    return state;
+}
+
+void Renderer::restore(const RendererState& state)
+{
+    const std::vector<gpu::Buffer*> buffers = lastingBuffers();
+    if (state.buffers.size() != buffers.size())
+        throw Error("A state of {} buffers does not fit a renderer that keeps {}.", state.buffers.size(),
+                    buffers.size());
+    for (size_t i = 0; i < buffers.size(); ++i) {
+        const auto& [name, bytes] = state.buffers[i];
+        if (name != buffers[i]->label() || bytes.size() != buffers[i]->size())
+            throw Error("A state with {} bytes of \"{}\" does not fit a renderer with {} bytes of \"{}\".",
+                        bytes.size(), name, buffers[i]->size(), buffers[i]->label());
+    }
+    reset();
+    for (size_t i = 0; i < buffers.size(); ++i) device_.queue().write(*buffers[i], state.buffers[i].second);
+    frameCount_ = state.frames;
+    historyFrames_ = state.historyFrames;
+    frame_.camera = state.camera;
+    frame_.previousCamera = state.previousCamera;
+}
+
+} // namespace passes

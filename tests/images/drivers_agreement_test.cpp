@@ -1,0 +1,125 @@
+// Two drivers that share no code, lavapipe and SwiftShader, make the same picture of every built-in scene with every
+// method. Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
+// few paths on which rounding decides a branch. SwiftShader takes minutes to compile a renderer, so: ctest -R drivers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "engine/scene/procedural.h"
+#include "passes/camera_path.h"
+#include "passes/renderer.h"
+#include "tests/support/tile_tests.h"
+
+namespace support
+{
+namespace
+{
+
+using passes::Method;
+
+constexpr const char* DRIVERS[] = {"/usr/share/vulkan/icd.d/lvp_icd.x86_64.json",
+                                   "/usr/lib/chromium/vk_swiftshader_icd.json"};
+constexpr uint32_t RUNS = 24;
+
+class DriversAgreement : public testing::TestWithParam<std::tuple<scene::BuiltInScene, Method>>
+{
+  protected:
+    void SetUp() override
+    {
+        if (!std::getenv("TRICHROME_TEST_DRIVERS"))
+            GTEST_SKIP() << "SKIPPED, NOT TESTED: takes an hour; ctest -R drivers does it";
+        for (const char* driver : DRIVERS)
+            if (!std::filesystem::exists(driver)) GTEST_SKIP() << "SKIPPED, NOT TESTED: there is no " << driver;
+        setenv("VK_ICD_FILENAMES", (std::string(DRIVERS[0]) + ":" + DRIVERS[1]).c_str(), 1);
+    }
+};
+
+// The last of 3 frames with a moving camera, so that all stages take part; one picture for each seed.
+std::vector<image::Image> picturesOn(const std::string& driver, const scene::Scene& scene, Method method)
+{
+    gpu::Device device = gpu::Device::create({.adapter = driver});
+    passes::Settings settings;
+    settings.method = method;
+    settings.width = 24;
+    settings.height = 16;
+    settings.maxBounces = 3;
+    settings.spatial = 1;
+    passes::Renderer renderer(device, scene, settings);
+    const passes::CameraAt cameraAt = passes::cameraOrbit(scene.cameras.at(0), 2);
+    std::vector<image::Image> pictures;
+    for (settings.seed = 0; settings.seed < RUNS; ++settings.seed) {
+        renderer.setCamera(cameraAt(0));
+        renderer.apply(settings);
+        renderer.reset();
+        for (uint32_t frame = 0; frame < 3; ++frame) {
+            renderer.setCamera(cameraAt(frame));
+            renderer.renderFrame();
+        }
+        pictures.push_back(renderer.readFrame());
+        for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << driver << " " << stage;
+    }
+    return pictures;
+}
+
+TEST_P(DriversAgreement, OnTheMeanOfEveryTile)
+{
+    const scene::Scene scene = std::get<0>(GetParam()).make();
+    const std::vector<image::Image> a = picturesOn("llvmpipe", scene, std::get<1>(GetParam()));
+    const std::vector<image::Image> b = picturesOn("SwiftShader", scene, std::get<1>(GetParam()));
+
+    PictureRuns difference, one;
+    uint64_t equal = 0;
+    for (uint32_t run = 0; run < RUNS; ++run) {
+        image::Image picture = a[run];
+        for (size_t i = 0; i < picture.pixels.size(); ++i) {
+            const glm::vec3 x = a[run].pixels[i], y = b[run].pixels[i];
+            equal += glm::length(x - y) <= 1e-3f * glm::length(x) ? 1 : 0;
+            picture.pixels[i] = x - y;
+        }
+        difference.add(picture);
+        one.add(a[run]);
+    }
+    const double share = double(equal) / double(RUNS * a[0].pixels.size());
+
+    // Zero, but for rounding: 1e-4 of the tile.
+    const auto zero = [](TileEstimates tiles) {
+        for (auto& tile : tiles.tiles)
+            for (Estimate& e : tile) e = {0, std::pow(1e-4 * e.mean, 2), std::numeric_limits<double>::infinity()};
+        return tiles;
+    };
+    const PictureEstimates found = difference.estimates(), mean = one.estimates();
+    const TileVerdict verdict = tilesAgree(found.tiles, zero(mean.tiles));
+    EXPECT_TRUE(verdict.passes) << verdict.summary;
+    double worst = 0;
+    for (size_t c = 0; c < 3; ++c) {
+        const Estimate& whole = found.whole.tiles[0][c];
+        const double scale = mean.whole.tiles[0][c].mean;
+        worst = std::max(worst, std::abs(whole.mean) / scale);
+        const statistics::Difference d = statistics::compare(whole, zero(mean.whole).tiles[0][c]);
+        EXPECT_TRUE(statistics::showsEquivalence(d, 0.01 * scale, 0.05))
+            << "channel " << c << ": differs by " << whole.mean << " of " << scale;
+    }
+    EXPECT_GT(share, 0.9);
+    std::printf("%.2f%% of pixels are equal within 1e-3, means within %.1e; %s\n", 100 * share, worst,
+                verdict.summary.c_str());
+}
+
+constexpr Method METHODS[] = {Method::Pt, Method::RestirPt, Method::RgbRestir, Method::GroupedRestir};
+constexpr const char* METHOD_NAMES[] = {"Pt", "RestirPt", "RgbRestir", "GroupedRestir"};
+
+std::string nameOf(const testing::TestParamInfo<DriversAgreement::ParamType>& test)
+{
+    return std::string(std::get<0>(test.param).name) + METHOD_NAMES[size_t(std::get<1>(test.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, DriversAgreement,
+                         testing::Combine(testing::ValuesIn(scene::builtInScenes()), testing::ValuesIn(METHODS)),
+                         nameOf);
+
+} // namespace
+} // namespace support

@@ -1,0 +1,111 @@
+#include "ui/cli/checkpoint_options.h"
+
+#include "engine/base/error.h"
+#include "engine/base/files.h"
+#include "engine/base/fingerprint.h"
+#include "ui/cli/output_file.h"
+
+#include <cstdio>
+
+namespace ui
+{
+
+namespace
+{
+
+// When a render ends, and what is written then, does not change its frames.
+bool decidesFrames(const std::string& setting)
+{
+    return setting != "frames" && setting != "seconds" && setting != "average";
+}
+
+std::string hexadecimal(uint64_t value)
+{
+    return fmt::format("{:016x}", value);
+}
+
+passes::Identity identityOf(const passes::Renderer& renderer, const RunReport& report)
+{
+    passes::Identity identity = {{"version", version()},
+                                 {"device", report.adapter.name},
+                                 {"driver", report.adapter.driver},
+                                 {"scene's contents", hexadecimal(renderer.sceneFingerprint())}};
+    for (const auto& [name, value] : passes::toText(report.settings))
+        if (decidesFrames(name)) identity.emplace_back(name, value);
+    for (const auto& [name, value] : report.extra) {
+        if (name == "camera-path") // wherever it lies
+            identity.emplace_back("camera path's contents", hexadecimal(fingerprint(files::read(value))));
+        else
+            identity.emplace_back(name, value);
+    }
+    return identity;
+}
+
+} // namespace
+
+void CheckpointOptions::addTo(CLI::App& app)
+{
+    app.add_option(
+           "--checkpoint", checkpoint_,
+           "Keeps the unfinished render here: every now and then, on Ctrl-C and at the end, whole or not at all.")
+        ->option_text("FILE")
+        ->group("Long renders");
+    app.add_option("--checkpoint-interval", interval_,
+                   "Time between two checkpoints: the most that is lost when the program is killed.")
+        ->option_text("0 to 86400 s (300)")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->group("Long renders");
+    app.add_option(
+           "--resume", resume_,
+           "Goes on from a checkpoint, to the same bits as without a break. Scene, device, version and settings "
+           "must be the same, but for --frames, --seconds and --average: so a finished render can get more.")
+        ->option_text("FILE")
+        ->group("Long renders");
+}
+
+void CheckpointOptions::requireWritable() const
+{
+    if (!checkpoint_.empty()) ui::requireWritable(checkpoint_);
+}
+
+double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& report)
+{
+    identity_ = identityOf(renderer, report);
+    kept_ = std::chrono::steady_clock::now();
+    if (resume_.empty()) return 0;
+    const passes::Checkpoint checkpoint = passes::readCheckpoint(resume_);
+    passes::requireSame(checkpoint, identity_, resume_);
+    const uint64_t frames = checkpoint.state.frames;
+    if (report.settings.seconds == 0 && frames > report.settings.frames)
+        throw Error("Cannot resume from \"{}\": it has {} frames already, more than the {} of --frames.", resume_,
+                    frames, report.settings.frames);
+    renderer.restore(checkpoint.state);
+    return checkpoint.seconds;
+}
+
+void CheckpointOptions::keep(passes::Renderer& renderer, double seconds)
+{
+    const auto now = std::chrono::steady_clock::now();
+    if (checkpoint_.empty() || now - kept_ < std::chrono::duration<double>(interval_)) return;
+    kept_ = now;
+    write(renderer, seconds, "Rendering goes on.");
+}
+
+bool CheckpointOptions::finish(passes::Renderer& renderer, double seconds) const
+{
+    return checkpoint_.empty() || write(renderer, seconds, "There is no checkpoint of the last frames.");
+}
+
+bool CheckpointOptions::write(passes::Renderer& renderer, double seconds, const char* consequence) const
+{
+    const passes::RendererState state = renderer.save();
+    try {
+        passes::write(checkpoint_, {.identity = identity_, .seconds = seconds, .state = state});
+        return true;
+    } catch (const Error& error) {
+        std::fprintf(stderr, "Warning: %s %s\n", error.what(), consequence);
+        return false;
+    }
+}
+
+} // namespace ui
