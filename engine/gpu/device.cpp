@@ -6,7 +6,11 @@
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/gpu/vulkan.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+
+#include <unistd.h>
 
 namespace gpu
 {
@@ -104,6 +108,9 @@ DeviceState::~DeviceState()
     }
     if (stalled) {
         instance.abandon();
+        // The driver's threads still run, and destructors of its library would take their memory away (SwiftShader
+        // crashes).
+        on_exit([](int status, void*) { std::fflush(nullptr), _exit(status); }, nullptr);
         return;
     }
     vkDeviceWaitIdle(device);
