@@ -135,8 +135,8 @@ TEST_F(Converge, MeasuresAgainstAFile)
     EXPECT_EQ(image::read(directory / "out/reference.exr").image.pixels, image::read(reference).image.pixels);
     const std::string small = directory / "small.exr";
     runWell({"render", "cornell", "-o", small, "--size", "8x8", "--max-bounces", "2", "--frames", "1"});
-    expectRefusal(tiny("out", {"--reference", small}), 1, "has 8x8 pixels, but --size is 16x12");
-    expectRefusal(tiny("out", {"--reference", "missing.exr"}), 1, "missing.exr");
+    expectRefusal(tiny("other", {"--reference", small}), 1, "has 8x8 pixels, but --size is 16x12");
+    expectRefusal(tiny("other", {"--reference", "missing.exr"}), 1, "missing.exr");
     expectRefusal(tiny("out", {"--reference", reference, "--orbit", "1"}), 2, "--reference FILE cannot be combined");
 }
 
