@@ -2,7 +2,6 @@
 
 #include "passes/inspector.h"
 
-#include "engine/base/error.h"
 #include "engine/scene/procedural.h"
 #include "tests/support/gpu_fixture.h"
 
@@ -38,12 +37,6 @@ class InspectorTest : public GpuTest
     const scene::Scene scene_ = scene::builtInScenes()[0].make();
 };
 
-TEST_F(InspectorTest, ThePathTracerHasNothingToInspect)
-{
-    passes::Renderer renderer(device(), scene_, small(passes::Method::Pt));
-    EXPECT_THROW(passes::Inspector{renderer}, Error);
-}
-
 // One reservoir and one frame: every spatial shift is counted by the stage that made it, too. The inspector counts it
 // twice: where it starts and where it arrives.
 TEST_F(InspectorTest, ShiftsAreThoseThatTheStagesCounted)
@@ -54,7 +47,7 @@ TEST_F(InspectorTest, ShiftsAreThoseThatTheStagesCounted)
     passes::Inspector inspector(renderer);
     renderer.renderFrame();
     uint64_t tried = 0, failed = 0;
-    for (const shared::Inspection& seen : inspector.read()) {
+    for (const shared::Inspection& seen : inspector.reservoirs()) {
         tried += seen.lengthAndShifts >> 16 & 0xff;
         failed += seen.lengthAndShifts >> 24;
         EXPECT_LE(seen.lengthAndShifts & 0xffff, settings.maxBounces);
@@ -63,6 +56,84 @@ TEST_F(InspectorTest, ShiftsAreThoseThatTheStagesCounted)
     EXPECT_EQ(tried, 2 * sum(stats.shifts));
     EXPECT_EQ(tried - failed, 2 * stats.shifts.at("done"));
     EXPECT_GT(failed, 0u);
+
+    passes::ShiftCounts all{};
+    for (const passes::ShiftCounts& counts : inspector.shifts())
+        for (size_t i = 0; i < all.size(); ++i) all[i] += counts[i];
+    const char* const names[] = {"done", "ended", "joined-earlier", "not-joinable", "hidden", "dark"};
+    for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], stats.shifts.at(names[i])) << names[i];
+    EXPECT_GT(stats.shifts.at("hidden"), 0u);
+    EXPECT_GT(stats.shifts.at("not-joinable"), 0u);
+}
+
+// A path begins at what its pixel sees and ends at light, with as many scattering events as the reservoir says, also
+// when it was drawn by another pixel and reconnected here. Where its light lies in the picture, the picture is bright.
+TEST_F(InspectorTest, PathsLeadFromThePixelToLight)
+{
+    for (const passes::Shift shift : {passes::Shift::Replay, passes::Shift::Hybrid}) {
+        passes::Settings settings = small(passes::Method::RgbRestir);
+        settings.maxBounces = 3;
+        settings.shift = shift;
+        passes::Renderer renderer(device(), scene_, settings);
+        passes::Inspector inspector(renderer);
+        for (int frame = 0; frame < 3; ++frame) renderer.renderFrame();
+        const std::vector<shared::Inspection> held = inspector.reservoirs();
+        passes::Settings dark = settings;
+        dark.method = passes::Method::Pt;
+        dark.maxBounces = 0;
+        passes::Renderer emitters(renderer, dark);
+        emitters.renderFrame();
+        const image::Image emission = emitters.readFrame();
+        const uint32_t pixels = settings.width * settings.height;
+        uint32_t lightsSeen = 0, joined = 0, foreign = 0;
+        for (uint32_t pixel = 0; pixel < pixels; pixel += 5) {
+            const auto paths = inspector.paths(pixel);
+            ASSERT_EQ(paths.size(), 3u);
+            for (uint32_t c = 0; c < 3; ++c) {
+                const shared::Inspection& seen = held[c * pixels + pixel];
+                const std::vector<shared::PathPoint>& path = paths[c];
+                if (!(seen.weightSum > 0)) {
+                    EXPECT_TRUE(path.empty());
+                    continue;
+                }
+                ASSERT_EQ(path.size(), (seen.lengthAndShifts & 0xffff) + 1) << "pixel " << pixel << ", reservoir " << c;
+                EXPECT_EQ(path.back().kind, shared::POINT_LIGHT);
+                const float width = float(settings.width), height = float(settings.height);
+                EXPECT_NEAR((0.5f + 0.5f * path[0].x / path[0].depth) * width, float(pixel % settings.width) + 0.5f,
+                            0.02f);
+                EXPECT_NEAR((0.5f - 0.5f * path[0].y / path[0].depth) * height, float(pixel / settings.width) + 0.5f,
+                            0.02f);
+                joined += seen.leafAndJoint >> 16 > 0;
+                foreign += seen.seedPixel != pixel;
+                const shared::PathPoint& light = path.back();
+                const float x = (0.5f + 0.5f * light.x / light.depth) * width;
+                const float y = (0.5f - 0.5f * light.y / light.depth) * height;
+                uint32_t bright = 0; // of the pixels that touch this point: its edge is somebody else's
+                for (const float dx : {-0.5f, 0.5f})
+                    for (const float dy : {-0.5f, 0.5f})
+                        if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
+                            bright += emission.at(uint32_t(x + dx), uint32_t(y + dy)).r > 0;
+                EXPECT_GT(bright, 0u) << x << ", " << y;
+                ++lightsSeen;
+            }
+        }
+        EXPECT_GT(lightsSeen, pixels / 5);
+        EXPECT_GT(foreign, pixels / 20);
+        if (shift == passes::Shift::Hybrid) EXPECT_GT(joined, pixels / 20);
+    }
+}
+
+TEST_F(InspectorTest, ThePathTracerHasNoReservoirsButAWalk)
+{
+    passes::Renderer renderer(device(), scene_, small(passes::Method::Pt));
+    passes::Inspector inspector(renderer);
+    renderer.renderFrame();
+    EXPECT_TRUE(inspector.reservoirs().empty());
+    EXPECT_TRUE(inspector.shifts().empty());
+    const auto paths = inspector.paths(24 * 32 / 2 + 16);
+    ASSERT_EQ(paths.size(), 1u);
+    EXPECT_GE(paths[0].size(), 2u);
+    for (const shared::PathPoint& point : paths[0]) EXPECT_EQ(point.kind, shared::POINT_SURFACE);
 }
 
 TEST_F(InspectorTest, WeightsTreesAndConfidenceAreWhatTheyMean)
@@ -76,7 +147,7 @@ TEST_F(InspectorTest, WeightsTreesAndConfidenceAreWhatTheyMean)
     double held = 0, trees = 0;
     for (uint32_t frame = 1; frame <= 6; ++frame) {
         renderer.renderFrame();
-        const std::vector<shared::Inspection> all = inspector.read();
+        const std::vector<shared::Inspection> all = inspector.reservoirs();
         ASSERT_EQ(all.size(), 3 * pixels);
         uint32_t most = 0;
         for (const shared::Inspection& seen : all) {

@@ -218,7 +218,7 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
                 : fmt::format("Measured and predicted DISAGREE: of {} points one is {:.1f} standard errors apart. "
                               "Alpha-blended surfaces seen directly would explain it; else something is wrong.",
                               count, worst));
-    if (each != nullptr && lawHolds(each->method.settings, correlation.moving))
+    if (each != nullptr && passes::lawHolds(each->method.settings, correlation.moving))
         sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
                             "accumulation: frame M is the "
                             "mean of the path tracer's first M frames, which a path tracer that adds up its frames "
