@@ -26,7 +26,7 @@ constexpr uint64_t MAX_PIXELS_PER_BYTE = 16;
 
 struct Stream {
     std::span<const std::byte> rest;
-    bool ranOut = false; // stb_image reads zeros past the end and says nothing
+    bool ranOut = false; // stb_image says nothing of it
 };
 
 const stbi_io_callbacks CALLBACKS = {
@@ -34,7 +34,13 @@ const stbi_io_callbacks CALLBACKS = {
         [](void* user, char* to, int size) {
             auto& stream = *static_cast<Stream*>(user);
             const size_t count = std::min(static_cast<size_t>(size), stream.rest.size());
-            if (count == 0) stream.ranOut = true;
+            if (count == 0) {
+                // Past the end stb_image would read zeros, and wait for ever for a run that is not empty. Newlines
+                // end its loops: of the header, and of runs.
+                stream.ranOut = true;
+                std::memset(to, '\n', static_cast<size_t>(size));
+                return size;
+            }
             std::memcpy(to, stream.rest.data(), count);
             stream.rest = stream.rest.subspan(count);
             return static_cast<int>(count);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
@@ -20,10 +21,12 @@ namespace
 
 // Deflate cannot expand by more than this (RFC 1951: 258 bytes from 2 bits).
 constexpr uint64_t MAX_DEFLATE_RATIO = 1032;
+constexpr uint64_t LIBPNG_BYTES = 1 << 20; // the largest piece of what it needs for itself
 
 // Everything a longjmp may skip over, owned outside of the function that calls setjmp.
 struct Reader {
     std::span<const std::byte> rest;
+    uint64_t mostBytes; // that libpng may have at once
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::string reason;
@@ -48,6 +51,17 @@ template <class Side>
 }
 
 void onWarning(png_structp, png_const_charp) {}
+
+// libpng takes memory for as much as a chunk claims to be long, and only warns where that is beyond its limit.
+png_voidp allocate(png_structp png, png_alloc_size_t size)
+{
+    return size <= static_cast<const Reader*>(png_get_mem_ptr(png))->mostBytes ? std::malloc(size) : nullptr;
+}
+
+void release(png_structp, png_voidp memory)
+{
+    std::free(memory);
+}
 
 void readBytes(png_structp png, png_bytep to, size_t count)
 {
@@ -127,8 +141,9 @@ template <class Sample>
 Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
 {
     constexpr bool SIXTEEN_BIT = std::is_same_v<Sample, uint16_t>;
-    Reader reader{.rest = bytes};
-    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError<Reader>, onWarning);
+    Reader reader{.rest = bytes, .mostBytes = LIBPNG_BYTES + MAX_DEFLATE_RATIO * bytes.size()};
+    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, onError<Reader>, onWarning, &reader, allocate,
+                                          release);
     CHECK(reader.png != nullptr);
     reader.info = png_create_info_struct(reader.png);
     CHECK(reader.info != nullptr);
@@ -141,6 +156,7 @@ Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& wh
         throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
     if (png_get_rowbytes(reader.png, reader.info) * height > MAX_DEFLATE_RATIO * bytes.size())
         throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes.size());
+    reader.mostBytes += width * 4 * sizeof(uint16_t); // a row, whatever the sample
 
     if (!prepareRows(reader, SIXTEEN_BIT)) throw malformed();
     CHECK_EQ(png_get_rowbytes(reader.png, reader.info), width * 4 * sizeof(Sample));

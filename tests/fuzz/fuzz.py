@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Fuzzes every target for SECONDS: tests/fuzz/fuzz.py FUZZER SECONDS [TARGET...]. Exit code 1 when one fails.
+0 seconds: a thousand inputs, the same every time from the same start.
 
 Inputs are kept beside the fuzzer and used again next time; a failing one is printed with the command that replays it.
 Copied to tests/fuzz/corpus/TARGET/, it is tried by every test run from then on."""
@@ -29,7 +30,8 @@ def fuzz(fuzzer, target, seconds):
                 if file.stat().st_size <= MAX_BYTES:
                     (seeds / file.name).write_bytes(file.read_bytes())
     folders = [grown, seeds] + [kept for kept in [KEPT / target] if kept.is_dir()]
-    limits = ["-rss_limit_mb=2048", "-timeout=20", f"-max_len={MAX_BYTES}", f"-max_total_time={seconds}"]
+    limits = ["-rss_limit_mb=2048", "-timeout=20", f"-max_len={MAX_BYTES}"]
+    limits += [f"-max_total_time={seconds}"] if seconds else ["-runs=1000", "-seed=1"]
     command = [fuzzer, *limits, "-print_final_stats=1", f"-artifact_prefix={found}/", *folders]
     environment = os.environ | {
         "TRICHROME_FUZZ": target,

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/base/files.h"
 
 namespace
 {
@@ -75,6 +76,18 @@ TEST(PngCodec, CutFilesAreErrors)
 {
     const auto bytes = image::encodePng(20, 20, std::vector<uint8_t>(1200, 77), {});
     expectErrorsWhenCut(bytes, bytes.size(), [](auto part) { image::decodePng<uint8_t>(part, "it"); });
+}
+
+// A text chunk that claims 1.7 GB, in 103 bytes: with its memory at hand libpng reads on, and finds the file cut short.
+TEST(PngCodec, AChunkGetsNoMoreMemoryThanTheFileWarrants)
+{
+    const auto bytes = files::read(TRICHROME_SOURCE_DIR "/tests/fuzz/corpus/png/text_of_1_7_gb.png");
+    try {
+        image::decodePng<uint8_t>(bytes, "it");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find("cut short"), std::string::npos) << error.what(); // it read on, then
+    }
 }
 
 TEST(JpegCodec, DecodesColorsTopRowFirst)

@@ -123,6 +123,8 @@ TEST_F(ImageFile, MalformedFilesAreErrors)
 
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
     EXPECT_NE(messageOf(save("a.hdr", header + "-Y 2 +X 2\n1234")).find("cut short"), std::string::npos);
+    const std::string row = header + "-Y 2 +X 16\n\x02\x02"; // of the run-length form
+    EXPECT_NE(messageOf(save("r.hdr", row + std::string("\0\x10", 2))).find("cut short"), std::string::npos);
     EXPECT_NE(messageOf(save("b.hdr", header + "-Y 60000 +X 60000\n1234")).find("60000 x 60000"), std::string::npos);
     EXPECT_EQ(messageOf(save("c.txt", "hello")),
               "Picture \"" + (folder / "c.txt").string() + "\" (5 bytes) is neither EXR, HDR, PNG nor JPEG.");
