@@ -16,16 +16,9 @@ using passes::Method;
 using passes::Renderer;
 using passes::Settings;
 
-class Autocovariance : public GpuTest
+class Autocovariance : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
-
     // Point lights of three hues, and surfaces that glow: much color noise, light tails, and emission seen directly.
     static scene::Scene hues()
     {

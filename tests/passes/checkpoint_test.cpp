@@ -95,16 +95,9 @@ TEST(Checkpoint, NamesWhatIsDifferent)
 
 // ------------------------------------------------------------------------------------------------------ of a renderer
 
-class CheckpointOfRenderer : public GpuTest
+class CheckpointOfRenderer : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
-
     static Settings settings(Method method)
     {
         Settings s;

@@ -11,15 +11,9 @@
 namespace
 {
 
-class InspectorTest : public GpuTest
+class InspectorTest : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
     static passes::Settings small(passes::Method method)
     {
         passes::Settings settings;

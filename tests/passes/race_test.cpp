@@ -19,14 +19,12 @@ using passes::Reference;
 using passes::References;
 using passes::Settings;
 
-class RaceTest : public GpuTest
+class RaceTest : public RendererFixture
 {
   protected:
     void SetUp() override
     {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
+        RendererFixture::SetUp();
         settings_.width = 16;
         settings_.height = 12;
         settings_.maxBounces = 2;

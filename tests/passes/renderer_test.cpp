@@ -16,16 +16,9 @@ namespace
 using passes::Renderer;
 using Pixels = std::vector<glm::vec3>;
 
-class RendererTest : public GpuTest
+class RendererTest : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
-
     static support::TestScene sceneNamed(const std::string& name)
     {
         for (const support::TestScene& test : support::testScenes())

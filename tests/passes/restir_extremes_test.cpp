@@ -67,15 +67,8 @@ const Extreme EXTREMES[] = {
     {"RoughnessOne", [] { return rough(1, 0); }},
 };
 
-class RestirExtremes : public GpuTest, public testing::WithParamInterface<Extreme>
+class RestirExtremes : public RendererFixture, public testing::WithParamInterface<Extreme>
 {
-  protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
 };
 
 } // namespace

@@ -26,16 +26,9 @@ using Pixels = std::vector<glm::vec3>;
 
 constexpr glm::vec3 LUMINANCE(0.2126f, 0.7152f, 0.0722f);
 
-class RestirTest : public GpuTest
+class RestirTest : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (!IsSkipped() && device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
-    }
-
     static scene::Scene sceneNamed(const std::string& name)
     {
         for (const support::TestScene& test : support::testScenes())

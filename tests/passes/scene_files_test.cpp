@@ -16,17 +16,9 @@
 namespace
 {
 
-class SceneFiles : public GpuTest
+class SceneFiles : public RendererFixture
 {
   protected:
-    void SetUp() override
-    {
-        GpuTest::SetUp();
-        if (IsSkipped()) return;
-        if (device().adapter().name.find("SwiftShader") != std::string::npos)
-            GTEST_SKIP() << "only on llvmpipe: SwiftShader takes seconds to compile the kernels of each file";
-    }
-
     static void expectFinite(const scene::Scene& scene)
     {
         passes::Settings settings;

@@ -17,6 +17,12 @@
 
 #include <gtest/gtest.h>
 
+// SwiftShader takes five times as long as lavapipe to run a kernel, and minutes to compile a renderer's.
+inline bool isSlow(const gpu::Device& device)
+{
+    return device.adapter().name.find("SwiftShader") != std::string::npos;
+}
+
 class GpuTest : public testing::Test
 {
   protected:
@@ -59,4 +65,16 @@ class GpuTest : public testing::Test
 
   private:
     static const gpu::ComputePipeline& pipeline(const Run& run);
+};
+
+// For tests that run whole renderers.
+class RendererFixture : public GpuTest
+{
+  protected:
+    void SetUp() override
+    {
+        GpuTest::SetUp();
+        if (!IsSkipped() && isSlow(device()))
+            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling one renderer takes minutes there";
+    }
 };

@@ -16,12 +16,6 @@
 namespace support
 {
 
-// Most tests of the toy run on one driver: SwiftShader, which takes five times as long, gets one of them.
-inline bool isSlow(const gpu::Device& device)
-{
-    return device.adapter().name.find("SwiftShader") != std::string::npos;
-}
-
 struct ToyCase {
     Reuse reuse = Reuse::Both;
     bool moves = false; // domains change from frame to frame, and are seen by other pixels

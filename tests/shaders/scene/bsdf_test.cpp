@@ -144,8 +144,7 @@ TEST_F(Bsdf, HasTheValuesOfTheModel)
 
 TEST_F(Bsdf, SamplesWithTheDensityItClaims)
 {
-    if (device().adapter().name.find("SwiftShader") != std::string::npos)
-        GTEST_SKIP() << "SKIPPED ON SwiftShader: takes minutes there";
+    if (isSlow(device())) GTEST_SKIP() << "SKIPPED ON SwiftShader: takes minutes there";
     constexpr int ROWS = 24, COLUMNS = 24, STEPS = 24; // bins of x and the azimuth about it: no lobe is at a pole
     constexpr uint32_t SAMPLES = 1 << 18;
     std::vector<dvec3> grid; // midpoints of a fine grid, bin by bin
