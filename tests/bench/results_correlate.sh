@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# The figures of RESULTS.md, section "Autocovariance": tests/bench/results_correlate.sh PROGRAM DIR
-# Five scenes, measured to M = FRAMES and predicted to 32768 (SIZE, RUNS and FRAMES shorten or lengthen it; SPONZA names
+# The figures of RESULTS.md, section "Autocovariance": tests/bench/results_correlate.sh PROGRAM DIR [SCENE...]
+# Five scenes or those named, measured to M = FRAMES and predicted to 32768 (SIZE, RUNS and FRAMES shorten or lengthen it; SPONZA names
 # that scene's file). What DIR holds already is not measured again.
 set -euo pipefail
 program=$1 out=$2
+shift 2
+scenes=("$@")
+[ ${#scenes[@]} -gt 0 ] || scenes=(cornell hall lamps dim ${SPONZA:+"$SPONZA"})
 mkdir -p "$out"
-for scene in cornell hall lamps dim ${SPONZA:+"$SPONZA"}; do
+for scene in "${scenes[@]}"; do
     name=$(basename "${scene%.*}")
     echo "== $name"
     "$program" correlate "$scene" -o "$out/$name" --size "${SIZE:-32x18}" --runs "${RUNS:-32}" \
