@@ -237,12 +237,15 @@ int main(int argc, char** argv)
 try {
     CLI::App app("Every method in stiff and extreme cases, against float64.");
     std::filesystem::path folder = "build/extremes";
-    std::string device = "llvmpipe", only;
+    std::string device = "llvmpipe", only, onlyMethod;
     bool quick = false;
     uint32_t times = 1;
+    const std::map<std::string, passes::Method> methods = {
+        {"pt", passes::Method::Pt}, {"restir-pt", passes::Method::RestirPt}, {"rgb-restir", passes::Method::RgbRestir}};
     app.add_option("-o,--output", folder, "Folder for extremes.csv, extremes.html, extremes.md (build/extremes)");
     app.add_option("--device", device, "Part of a device's name (llvmpipe)");
     app.add_option("--only", only, "Cases whose name contains this");
+    app.add_option("--method", onlyMethod, "This method alone")->check(CLI::IsMember(methods));
     app.add_option("--times", times, "So many times the usual runs of each case (1)")->check(CLI::Range(1, 1000));
     app.add_flag("--quick", quick, "A few of the cases");
     CLI11_PARSE(app, argc, argv);
@@ -251,8 +254,6 @@ try {
     gpu::Device gpu = gpu::Device::create({.adapter = device});
     std::vector<ExtremeCase> cases = bench::extremeCases();
     for (ExtremeCase& extreme : cases) extreme.runs *= times;
-    const std::pair<const char*, passes::Method> methods[] = {
-        {"pt", passes::Method::Pt}, {"restir-pt", passes::Method::RestirPt}, {"rgb-restir", passes::Method::RgbRestir}};
     std::vector<Row> rows;
     bool allSound = true;
     for (const ExtremeCase& extreme : cases) {
@@ -263,13 +264,14 @@ try {
         const support::PictureEstimates truth = extreme.truth(last, extreme.settings);
         rows.push_back({&extreme, {}});
         for (const auto& [name, method] : methods) {
+            if (!onlyMethod.empty() && name != onlyMethod) continue;
             const auto start = std::chrono::steady_clock::now();
             const Figures figures = measure(gpu, extreme, method, truth);
             rows.back().methods[name] = figures;
             allSound = allSound && sound(figures);
             std::printf(
                 "%-44s %-11s %s  not finite %llu  z %.2f  variance %.3g  largest %.3g  mean/truth %.4f  %.1f s\n",
-                extreme.name.c_str(), name, sound(figures) ? "ok " : "BAD",
+                extreme.name.c_str(), name.c_str(), sound(figures) ? "ok " : "BAD",
                 static_cast<unsigned long long>(figures.nonFinite), figures.z, figures.relativeVariance,
                 figures.largest, figures.meanOverTruth,
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
