@@ -237,7 +237,7 @@ int main(int argc, char** argv)
 try {
     CLI::App app("Every method in stiff and extreme cases, against float64.");
     std::filesystem::path folder = "build/extremes";
-    std::string device = "llvmpipe", only, onlyMethod;
+    std::string device = "llvmpipe", only, onlyMethod, shaders;
     bool quick = false;
     uint32_t times = 1;
     const std::map<std::string, passes::Method> methods = {
@@ -247,11 +247,12 @@ try {
     app.add_option("--only", only, "Cases whose name contains this");
     app.add_option("--method", onlyMethod, "This method alone")->check(CLI::IsMember(methods));
     app.add_option("--times", times, "So many times the usual runs of each case (1)")->check(CLI::Range(1, 1000));
+    app.add_option("--shaders", shaders, "Shader tree to compile in place of the built-in one: for planted errors");
     app.add_flag("--quick", quick, "A few of the cases");
     CLI11_PARSE(app, argc, argv);
 
     std::filesystem::create_directories(folder);
-    gpu::Device gpu = gpu::Device::create({.adapter = device});
+    gpu::Device gpu = gpu::Device::create({.adapter = device, .shaderDirectory = shaders});
     std::vector<ExtremeCase> cases = bench::extremeCases();
     for (ExtremeCase& extreme : cases) extreme.runs *= times;
     std::vector<Row> rows;

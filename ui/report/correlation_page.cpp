@@ -216,7 +216,8 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
                       "Measured and predicted agree: of {} points none is further apart than {:.1f} standard errors.",
                       count, worst)
                 : fmt::format("Measured and predicted DISAGREE: of {} points one is {:.1f} standard errors apart. "
-                              "Alpha-blended surfaces seen directly would explain it; else something is wrong.",
+                              "Alpha-blended surfaces seen directly would explain it, and so would rare bright paths "
+                              "in few runs (try more --runs on a smaller --size); else something is wrong.",
                               count, worst));
     if (each != nullptr && lawHolds(each->method.settings, correlation.moving))
         sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
