@@ -28,9 +28,26 @@ struct ChainPoint {
     bool operator==(const ChainPoint&) const = default;
 };
 
-// Renders frames 1 to `lastFrame` of a renderer's runs and takes the points M = 2, 4, 8, ...: all from one chain, since
-// M_c >= M does not bind before. With a moving camera a pixel of frame M pairs with the one that saw the same point in
-// frame M-1; pixels without one do not count. A stopped chain has the points that it reached.
+// Takes the points M = 2, 4, 8, ... of a renderer's runs, frame by frame: all from one chain, since M_c >= M does not
+// bind before. With a moving camera a pixel of frame M pairs with the one that saw the same point in frame M-1; pixels
+// without one do not count.
+class Chain
+{
+  public:
+    explicit Chain(Renderer& renderer, CameraAt cameraAt = {}); // starts over
+    void step();                                                // renders the next frame
+    uint32_t frame() const { return frame_; }                   // the last one, counted from 1
+    const std::vector<ChainPoint>& points() const { return points_; }
+
+  private:
+    Renderer& renderer_;
+    CameraAt cameraAt_;
+    uint32_t frame_ = 0;
+    image::Image before_;
+    std::vector<ChainPoint> points_;
+};
+
+// The points of frames 1 to `lastFrame`, or as many as were reached when `tick` stopped it.
 std::vector<ChainPoint> measureChain(Renderer& renderer, uint32_t lastFrame, const CameraAt& cameraAt,
                                      const Tick& tick);
 
@@ -45,11 +62,39 @@ struct FrameLaw {
 
 // `targets[c]` is the target of the reservoir that channel c is resolved from (resolvingTargets); for the path tracer,
 // each channel itself. `emission` is what each pixel sees directly (one run's picture): no part of what is resampled.
-// Nothing when `tick` stops it.
+class LawMeter
+{
+  public:
+    LawMeter(uint32_t runs, const std::array<glm::vec3, 3>& targets, image::Image emission);
+    void add(const image::Image& frame); // of all runs
+    uint32_t frames() const { return frames_; }
+    FrameLaw law() const; // needs two frames; below three runs there is nothing to leave out (`without` is empty)
+
+  private:
+    // Of one channel of one pixel in one run. C: the color; s: the weight sum that it is drawn with; E[C^2 / s] is
+    // E[q], with q the mean of f_c^2 / p_hat over a tree's paths: C^2 / s has that mean given the tree.
+    struct Sums {
+        double color = 0, weight = 0, ratio = 0; // running means
+        double square = 0;                       // sum of squared deviations of C
+
+        void add(double c, double s, double n);
+        double plateau(double n) const; // P from the means of n values
+    };
+    size_t runs_;
+    std::array<glm::vec3, 3> targets_;
+    image::Image emission_;
+    uint32_t frames_ = 0;
+    std::vector<Sums> sums_; // run by run, pixel by pixel, by channel
+};
+
+// The same of the renderer's next frames; nothing when `tick` stops it. Needs three runs.
 std::optional<FrameLaw> measureLaw(Renderer& renderer, uint32_t frames, const std::array<glm::vec3, 3>& targets,
                                    const image::Image& emission, const Tick& tick);
 
 std::array<glm::vec3, 3> resolvingTargets(Method method);
+
+// Whether the law of the chain holds: temporal reuse alone, of a resting camera.
+bool lawHolds(const Settings& settings, bool moving);
 
 // Whether every channel has a reservoir of its own, so that a resting camera's chain is the mean of the path tracer's
 // frames.

@@ -69,8 +69,7 @@ std::optional<Reference> readCached(const std::filesystem::path& file, const std
 
 } // namespace
 
-References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
-    : settings_(settings), cameraAt_(std::move(cameraAt)), options_(std::move(options))
+Settings referenceSettings(const Settings& settings)
 {
     Settings traced; // what does not change the picture stays at its default, so that more finds it in the cache
     traced.method = Method::Pt;
@@ -82,7 +81,12 @@ References::References(const Renderer& sharing, const Settings& settings, Camera
     traced.environment = settings.environment;
     traced.environmentScale = settings.environmentScale;
     traced.seed = ~settings.seed; // counting down from here, while repeats count up from theirs
-    settings_ = traced;
+    return traced;
+}
+
+References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
+    : settings_(referenceSettings(settings)), cameraAt_(std::move(cameraAt)), options_(std::move(options))
+{
     renderer_ = std::make_unique<Renderer>(sharing, settings_);
 }
 

@@ -29,6 +29,10 @@ struct Precision {
     uint64_t maxFrames = 16384; // and what it may cost at most
 };
 
+// Of the path tracer that makes the reference of these settings: with other random numbers than any seed near theirs,
+// and in batches with seeds that count down.
+Settings referenceSettings(const Settings& settings);
+
 // References of one scene, one per camera, made when first asked for. What was made is found again in the cache by the
 // settings, the precision and the pixels of one frame: those change with the scene, the device and the program.
 class References
@@ -40,8 +44,7 @@ class References
         std::function<void(double fraction)> progress = [](double) {};
         std::function<bool()> stop = [] { return false; };
     };
-    // Of the scene of `sharing`, path traced with these settings and other random numbers than any seed near theirs.
-    // The camera moves when `cameraAt` is given.
+    // Of the scene of `sharing`, path traced. The camera moves when `cameraAt` is given.
     References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options);
     // A picture from a file, for a resting camera. Throws Error: unreadable, of another size, not finite.
     References(const std::filesystem::path& file, const Settings& settings);

@@ -9,6 +9,10 @@
 #include "scene/camera.glsl"
 #include "scene/lights.glsl"
 
+#ifndef FIRST_VERTEX
+#define FIRST_VERTEX 1u // k of the vertex that a walk starts from
+#endif
+
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
 
@@ -89,7 +93,7 @@ void emitByLight(Vertex x, PathSeed seed)
         emit(makeLeaf(x.k, BY_LIGHT), contribution, e);
 }
 
-// Surface s is x_1, seen from direction wo.
+// Surface s is the first vertex, x_1 of a whole path, seen from direction wo.
 void walk(Surface s, vec3 wo, PathSeed seed)
 {
     if (MAX_BOUNCES == 0u) return;
@@ -97,7 +101,7 @@ void walk(Surface s, vec3 wo, PathSeed seed)
     Vertex x;
     x.s = s;
     x.throughput = vec3(1.0);
-    x.k = 1u;
+    x.k = FIRST_VERTEX;
     LOOP_BEGIN(x.k <= MAX_BOUNCES)
         x.bsdf = makeBsdf(x.s, wo);
         if (absorbs(x.bsdf) || !visit(x)) return;

@@ -171,7 +171,7 @@ def soak(arguments, display, folder):
     window.wait(lambda report: report["frames"] > 0)
     widgets = ["method.0", "method.1", "method.2", "method.3", "shift.0", "shift.1", "shift.2", "temporal", "compare", "freeze",
                "pixel-filter.0", "pixel-filter.1", "pause", "restart", "step", "undo", "redo", "reset-view", "layout.0",
-               "layout.1", "layout.2", "pixel", "first.0", "second.1"]  # fmt: skip
+               "layout.1", "layout.2", "pixel", "first.0", "second.1", "converge", "drop-reference", "correlation"]  # fmt: skip
     chance = random.Random(arguments.seed)
     start, samples, nonfinite, clicks = time.monotonic(), [], 0, 0
     while time.monotonic() - start < 60 * arguments.minutes:

@@ -126,7 +126,7 @@ class Correlator
   private:
     bool needsLaw(const NamedMethod& method) const
     {
-        return lawHolds(method.settings, bool(cameraAt_)) && !passes::accumulates(method.settings.method);
+        return passes::lawHolds(method.settings, bool(cameraAt_)) && !passes::accumulates(method.settings.method);
     }
 
     passes::Renderer& rendererOf(const std::string& name, const passes::Settings& settings, uint32_t runs)

@@ -81,11 +81,6 @@ double CurvePoint::z() const
     return difference.standardError > 0 ? difference.difference / difference.standardError : NO_VALUE;
 }
 
-bool lawHolds(const passes::Settings& settings, bool moving)
-{
-    return settings.temporal && settings.spatial == 0 && !moving;
-}
-
 void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods, Batches batches)
 {
     const auto key = [](const CorrelationBatch& batch) { return std::tie(batch.index, batch.method); };
@@ -98,7 +93,7 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
     if (!plain.empty()) correlation.sigma2 = laws(plain, [](const passes::FrameLaw& law) { return law.variance; });
     for (const NamedMethod& method : methods) {
         Curve curve{.method = method};
-        const bool known = lawHolds(method.settings, correlation.moving);
+        const bool known = passes::lawHolds(method.settings, correlation.moving);
         const Batches own = passes::accumulates(method.settings.method) ? plain : withLaw(batches, method.name);
         if (!own.empty() && known) {
             curve.plateau = laws(own, [](const passes::FrameLaw& law) { return law.plateau; });

@@ -52,9 +52,6 @@ struct Correlation {
     uint64_t nonFinite = 0;
 };
 
-// Whether the law of the chain holds for a method: temporal reuse alone, of a resting camera.
-bool lawHolds(const passes::Settings& settings, bool moving);
-
 // Fills the curves from batches, which may come in any order and twice: equal batches give equal bits.
 void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods, std::vector<CorrelationBatch> batches);
 

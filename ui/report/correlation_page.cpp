@@ -219,7 +219,7 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
                               "Alpha-blended surfaces seen directly would explain it, and so would rare bright paths "
                               "in few runs (try more --runs on a smaller --size); else something is wrong.",
                               count, worst));
-    if (each != nullptr && lawHolds(each->method.settings, correlation.moving))
+    if (each != nullptr && passes::lawHolds(each->method.settings, correlation.moving))
         sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
                             "accumulation: frame M is the "
                             "mean of the path tracer's first M frames, which a path tracer that adds up its frames "

@@ -72,12 +72,12 @@ void CameraHands::move(Order& order, const SceneFacts* facts, bool mouseTaken)
 
 bool CameraHands::bookmarks(WindowState& state, const SceneFacts* facts, WindowMemory& memory)
 {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantCaptureKeyboard) return false;
-    for (int i = 0; i < int(BOOKMARKS); ++i) {
-        if (!ImGui::IsKeyPressed(GLFW_KEY_1 + i, false)) continue;
+    if (ImGui::GetIO().WantCaptureKeyboard) return false;
+    for (const KeyPress& press : state.keys) {
+        const int i = press.key - GLFW_KEY_1;
+        if (i < 0 || i >= int(BOOKMARKS)) continue;
         std::optional<Pose>& bookmark = memory.bookmarks[state.order.scene][size_t(i)];
-        if (io.KeyCtrl) {
+        if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
             const bool placed = state.order.pose.has_value();
             if (const Pose* pose = poseIn(state.order, facts)) bookmark = *pose;
             if (!placed) state.order.pose.reset(); // setting one moves nothing

@@ -1,6 +1,7 @@
 #include "ui/window/compare_room.h"
 
 #include "ui/window/false_color.h"
+#include "ui/window/pixel_room.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,21 @@ void label(const WindowState& state, Source source, ImVec2 at, bool fromRight)
     list.AddRectFilled({from.x - pad.x, from.y - pad.y}, {from.x + size.x + pad.x, from.y + size.y + pad.y},
                        IM_COL32(0, 0, 0, 170), 3);
     list.AddText(from, ImGui::ColorConvertFloat4ToU32(colorOf(source)), text.c_str());
+}
+
+// Word by word from the lower left corner on.
+void drawLegend(const std::vector<LegendWord>& words, ImVec2 corner)
+{
+    float width = 0;
+    for (const LegendWord& word : words) width += ImGui::CalcTextSize((word.text + "  ").c_str()).x;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    ImVec2 at = {corner.x, corner.y - ImGui::GetTextLineHeight()};
+    list.AddRectFilled({at.x - 4, at.y - 2}, {at.x + width, corner.y + 2}, IM_COL32(0, 0, 0, 190), 3);
+    for (const LegendWord& word : words) {
+        list.AddText(at, ImGui::ColorConvertFloat4ToU32({word.color.r, word.color.g, word.color.b, 1}),
+                     word.text.c_str());
+        at.x += ImGui::CalcTextSize((word.text + "  ").c_str()).x;
+    }
 }
 
 bool there(const WindowState& state, Source source)
@@ -82,18 +98,29 @@ void drawCompareRoom(WindowState& state)
             state.editing = Side(editing);
     }
     const bool reference = state.pictures.reference != nullptr;
-    if (button(state.places, "Freeze as reference", "freeze",
+    ImGui::TextColored(colors::GRAY, "reference");
+    ImGui::SameLine();
+    if (button(state.places, "Freeze", "freeze",
                "Keeps the picture that is shown (left of the line) as it is now, to measure against (F). An EXR or PNG "
                "dropped into the window becomes the reference, too."))
         state.requests.freeze = true;
-    if (reference) {
+    ImGui::SameLine();
+    if (button(state.places, "Converge", "converge",
+               "Path traces a reference of this view beside the pictures, with random numbers of its own. It takes its "
+               "share of the time, and gets better as long as it is there; its own error is subtracted from the errors "
+               "that are shown."))
+        state.requests.converge = true;
+    if (reference || state.order.studies.reference) {
         ImGui::SameLine();
         state.requests.dropReference |= button(state.places, "Drop it", "drop-reference", "No reference any more.");
-        ImGui::SameLine();
-        ImGui::Checkbox("error (P)", &state.plots);
-        remember(state.places, "plots");
-        explain("Error against the reference over time, for A and B.");
     }
+    ImGui::Checkbox("error (P)", &state.plots);
+    remember(state.places, "plots");
+    explain("Error against the reference over time, for A and B.");
+    ImGui::SameLine();
+    ImGui::Checkbox("correlation (K)", &state.correlation);
+    remember(state.places, "correlation");
+    explain("Autocovariance of successive frames of A and B, measured beside the pictures on a small picture.");
     if (!two && !reference) return;
     View& view = state.view;
     const auto pick = [&](const char* name, Source& source, const char* doc) {
@@ -120,14 +147,8 @@ bool drawOverPicture(WindowState& state, ImVec2 low, ImVec2 high)
     View& view = state.view;
     const bool left = there(state, view.left()), right = there(state, view.right());
     const float top = low.y + 6;
-    if (const ShotPointer shot = state.pictures.shotOf(view.left()); shot && view.falseColor != FalseColor::Off) {
-        const std::string legend = legendOf(*shot, view.falseColor, view.reservoir);
-        const ImVec2 at = {low.x + 8, high.y - ImGui::GetTextLineHeight() - 8};
-        ImDrawList& list = *ImGui::GetBackgroundDrawList();
-        const ImVec2 size = ImGui::CalcTextSize(legend.c_str());
-        list.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, IM_COL32(0, 0, 0, 190), 3);
-        list.AddText(at, IM_COL32(255, 255, 255, 255), legend.c_str());
-    }
+    if (!state.legend.empty()) drawLegend(state.legend, {low.x + 8, high.y - 8});
+    drawPaths(state, low, high);
     if (!left || !right) return false; // only one picture: nothing to tell apart
     if (view.layout == Layout::One) {
         label(state, view.left(), {low.x + 8, top}, false);

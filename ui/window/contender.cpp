@@ -55,6 +55,19 @@ passes::Settings settingsOf(const Order& order, Side side)
     return settings;
 }
 
+std::vector<std::pair<std::string, passes::Variant>> stagesFor(const Order& order, Side side,
+                                                               const passes::Renderer& renderer)
+{
+    const passes::Settings settings = settingsOf(order, side);
+    auto stages = renderer.stagesFor(settings, order.moving);
+    const passes::Variant variant = stages.front().second;
+    const bool resamples = settings.method != passes::Method::Pt;
+    if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);
+    if (order.inspect.shifts && resamples && settings.spatial > 0) stages.emplace_back("inspect_shifts", variant);
+    if (order.inspect.pixel) stages.emplace_back("inspect_path", variant);
+    return stages;
+}
+
 Contender::Contender(std::unique_ptr<passes::Renderer> renderer, const scene::Scene& scene, const Order& order,
                      Side side)
     : renderer_(std::move(renderer)), side_(side), followed_(order)
@@ -81,6 +94,11 @@ void Contender::follow(const Order& order, const scene::Scene& scene)
     const bool stands = !order.moving && (cameraChanged || followed_.moving);
     if (settingsChanged || stands || order.restarts != followed_.restarts) startOver();
     followed_ = order;
+}
+
+bool Contender::runs(const Order& order) const
+{
+    return renderer_->settings() == settingsOf(order, side_) && order.inspect == followed_.inspect;
 }
 
 void Contender::recompile()
@@ -133,11 +151,23 @@ ShotPointer Contender::shot(const Order& order)
     shot->adapter = renderer_->device().adapter();
     shot->frameMilliseconds = frameMilliseconds_;
     shot->raysPerSecond = raysPerSecond_;
-    const bool inspects = order.inspect && renderer_->settings().method != passes::Method::Pt;
-    if (inspects && !inspector_) inspector_ = std::make_unique<passes::Inspector>(*renderer_);
-    if (!inspects) inspector_.reset();
-    if (inspector_) shot->reservoirs = inspector_->read();
+    inspect(*shot);
     return shot;
+}
+
+void Contender::inspect(Shot& shot)
+{
+    const Inspect& wanted = followed_.inspect;
+    if (wanted == Inspect{}) inspector_.reset();
+    if (wanted == Inspect{} || frames() == 0) return;
+    if (!inspector_) inspector_ = std::make_unique<passes::Inspector>(*renderer_);
+    if (wanted.reservoirs) shot.reservoirs = inspector_->reservoirs();
+    if (wanted.shifts) shot.shifts = inspector_->shifts();
+    if (!wanted.pixel) return;
+    const passes::Settings &full = followed_.settings, &now = renderer_->settings(); // smaller while the camera moves
+    const uint32_t x = std::min((*wanted.pixel)[0] * now.width / full.width, now.width - 1);
+    const uint32_t y = std::min((*wanted.pixel)[1] * now.height / full.height, now.height - 1);
+    shot.paths = inspector_->paths(y * now.width + x);
 }
 
 } // namespace ui

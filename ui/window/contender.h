@@ -9,6 +9,10 @@
 namespace ui
 {
 
+// What a side of the order compiles, those stages that inspect it included.
+std::vector<std::pair<std::string, passes::Variant>> stagesFor(const Order& order, Side side,
+                                                               const passes::Renderer& renderer);
+
 class Contender
 {
   public:
@@ -18,11 +22,12 @@ class Contender
     // settings would be the picture of neither, and no command line could repeat it. While the camera moves, reuse goes
     // on from frame to frame. Throws Error, and goes on as before: such as a picture too large for the device.
     void follow(const Order& order, const scene::Scene& scene);
-    void recompile(); // throws Error: a shader that does not compile
+    bool runs(const Order& order) const; // what the order wants of this side
+    void recompile();                    // throws Error: a shader that does not compile
 
     // Renders for a sixtieth of a second; `once`: one frame. Throws Error: the device is lost.
     void render(bool once);
-    ShotPointer shot(const Order& order); // of the film as it is
+    ShotPointer shot(const Order& order); // of the film as it is; with what the order that it follows wants inspected
 
     passes::Renderer& renderer() { return *renderer_; }
     double seconds() const { return seconds_; } // of rendering since it last started over
@@ -31,6 +36,7 @@ class Contender
   private:
     void place(const Order& order, const scene::Scene& scene);
     void startOver();
+    void inspect(Shot& shot);
 
     std::unique_ptr<passes::Renderer> renderer_;
     std::unique_ptr<passes::Inspector> inspector_;

@@ -13,6 +13,12 @@ namespace
 constexpr double APART = 1.06; // times of neighboring points, as a quotient
 constexpr int BACKGROUND = 5;  // nice: after the window's own thread
 
+// A reference that converges stays the same: what its own error adds is subtracted.
+bool sameReference(const ReferencePointer& a, const ReferencePointer& b)
+{
+    return a == b || (a && b && a->converging != 0 && a->converging == b->converging);
+}
+
 } // namespace
 
 ErrorMeter::ErrorMeter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
@@ -35,8 +41,11 @@ void ErrorMeter::offer(const Pictures& pictures)
         for (const Side side : {A, B}) {
             Track& track = tracks_[side];
             const ShotPointer& shot = pictures.sides[side];
-            const bool same = shot && shot->run == track.run && track.reference == pictures.reference;
-            if (!same) track = {.run = shot ? shot->run : 0, .reference = pictures.reference};
+            const bool same = shot && shot->run == track.run && sameReference(track.reference, pictures.reference);
+            if (same)
+                track.reference = pictures.reference;
+            else
+                track = {.run = shot ? shot->run : 0, .reference = pictures.reference};
         }
         if (!pictures.reference) complaint_.clear();
     }
@@ -83,14 +92,15 @@ void ErrorMeter::measure(std::unique_lock<std::mutex>& lock, Side side)
     std::string complaint;
     lock.unlock();
     try {
-        point.metrics = image::measure(reference->picture, shot->picture);
+        point.metrics = image::without(reference->error, image::measure(reference->picture, shot->picture));
     } catch (const Error& error) {
         complaint = error.what();
     }
     lock.lock();
     complaint_ = complaint;
     Track& track = tracks_[side];
-    if (track.run == shot->run && track.reference == reference && complaint.empty()) track.curve.push_back(point);
+    if (track.run == shot->run && sameReference(track.reference, reference) && complaint.empty())
+        track.curve.push_back(point);
     track.tried = shot;
     lock.unlock();
     wake_();

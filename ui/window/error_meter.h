@@ -29,8 +29,8 @@ class ErrorMeter
     ErrorMeter(const ErrorMeter&) = delete;
     ErrorMeter& operator=(const ErrorMeter&) = delete;
 
-    // Every new reference and every new film starts a new curve. Points are a few percent of their time apart; pictures
-    // of a moving camera are not measured.
+    // Every new reference and every new film starts a new curve; a reference that converges goes on being the same.
+    // Points are a few percent of their time apart; pictures of a moving camera are not measured.
     void offer(const Pictures& pictures);
     ErrorCurve curve(Side side) const;
     std::string complaint() const; // why nothing can be measured; empty: nothing is wrong

@@ -31,6 +31,28 @@ Color ramp(float x)
 constexpr Color NONE = {0.25f, 0.25f, 0.27f}; // nothing to show there
 constexpr Color ALARM = {1, 0, 1};
 
+// Of shifts, by shared::SHIFT_*.
+struct OutcomeColor {
+    const char* name;
+    Color color;
+};
+constexpr OutcomeColor OUTCOMES[] = {{"done", {0.30f, 0.34f, 0.46f}},           {"ended", {0.92f, 0.30f, 0.22f}},
+                                     {"joined earlier", {0.97f, 0.80f, 0.25f}}, {"not joinable", {0.70f, 0.42f, 1.00f}},
+                                     {"hidden", {0.25f, 0.75f, 0.95f}},         {"dark", {0.40f, 0.82f, 0.35f}}};
+static_assert(std::size(OUTCOMES) == shared::SHIFT_OUTCOMES);
+
+// The colors of all shifts of a pixel, mixed.
+Color mixOf(const passes::ShiftCounts& counts)
+{
+    Color sum(0);
+    float tried = 0;
+    for (size_t i = 0; i < counts.size(); ++i) {
+        sum += float(counts[i]) * OUTCOMES[i].color;
+        tried += float(counts[i]);
+    }
+    return tried > 0 ? sum / tried : NONE;
+}
+
 struct Cell { // the reservoirs of one pixel
     const Shot& shot;
     size_t pixel;
@@ -118,13 +140,16 @@ ScreenPicture falseColors(const Shot& shot, FalseColor view, int reservoir)
     ScreenPicture screen{.width = shot.picture.width, .height = shot.picture.height};
     screen.rgba.resize(shot.picture.pixels.size() * 4);
     const int count = reservoirCount(shot), c = std::clamp(reservoir, 0, std::max(count - 1, 0));
-    const bool numbers = view != FalseColor::Agreement && view != FalseColor::NotFinite;
+    const bool numbers = view != FalseColor::Agreement && view != FalseColor::NotFinite &&
+                         view != FalseColor::ShiftOutcomes && view != FalseColor::Floor;
     const Range range = numbers && count > 0 ? rangeOf(shot, view, c) : Range{};
     for (size_t pixel = 0; pixel < shot.picture.pixels.size(); ++pixel) {
         const Cell cell{shot, pixel};
         Color color = NONE;
         if (view == FalseColor::NotFinite) {
             color = finite(cell, count) ? Color(0.1f) : ALARM;
+        } else if (view == FalseColor::ShiftOutcomes) {
+            if (!shot.shifts.empty()) color = mixOf(shot.shifts[pixel]);
         } else if (count > 0 && view == FalseColor::Agreement) {
             color = count > 1 ? agreement(cell, count) : NONE;
         } else if (count > 0) {
@@ -137,30 +162,57 @@ ScreenPicture falseColors(const Shot& shot, FalseColor view, int reservoir)
     return screen;
 }
 
-std::string legendOf(const Shot& shot, FalseColor view, int reservoir)
+std::vector<LegendWord> legendOf(const Shot& shot, const Floor* floor, FalseColor view, int reservoir)
 {
+    const auto say = [](const std::string& text) { return std::vector<LegendWord>{{text}}; };
     const int count = reservoirCount(shot), c = std::clamp(reservoir, 0, std::max(count - 1, 0));
     if (view == FalseColor::NotFinite) {
         size_t wrong = 0;
         for (size_t pixel = 0; pixel < shot.picture.pixels.size(); ++pixel) wrong += !finite({shot, pixel}, count);
-        return fmt::format("magenta: not finite, {} pixels", wrong);
+        return say(fmt::format("magenta: not finite, {} pixels", wrong));
     }
-    if (count == 0) return "no reservoirs: choose a ReSTIR method";
+    if (view == FalseColor::Floor) {
+        if (!floor) return say("the color noise that stays: no estimate yet");
+        if (floor->frames == 0)
+            return say("black: every channel has samples of its own, so all its noise averages out");
+        return say(
+            fmt::format("color noise that no history removes: its deviation, shown as the picture is; from {} frames",
+                        floor->frames));
+    }
+    if (shot.order.settings.method == passes::Method::Pt) return say("no reservoirs: choose a ReSTIR method");
+    if (view == FalseColor::ShiftOutcomes) {
+        if (shot.order.settings.spatial == 0) return say("no spatial shifts: spatial is 0");
+        if (shot.shifts.empty()) return say("spatial shifts: not read yet");
+        passes::ShiftCounts all{};
+        uint64_t tried = 0;
+        for (const passes::ShiftCounts& counts : shot.shifts)
+            for (size_t i = 0; i < all.size(); ++i) all[i] += counts[i], tried += counts[i];
+        std::vector<LegendWord> words = say("spatial shifts:");
+        for (size_t i = 0; i < all.size(); ++i)
+            words.push_back(
+                {fmt::format("{} {:.1f}%", OUTCOMES[i].name, 100.0 * all[i] / double(std::max<uint64_t>(tried, 1))),
+                 OUTCOMES[i].color});
+        return words;
+    }
+    if (count == 0) return say("reservoirs: not read yet");
     if (view == FalseColor::Agreement) {
-        if (count == 1) return "one reservoir: nothing to agree with";
-        return count == 2 ? "white: both hold one path tree; black: each its own; gray: none"
-                          : "white: all hold one path tree; yellow, magenta, cyan: two of them; black: each its own; "
-                            "gray: none";
+        if (count == 1) return say("one reservoir: nothing to agree with");
+        if (count == 2) return say("white: both hold one path tree; black: each its own; gray: none");
+        return {{"white: all hold one path tree; two of them:"},
+                {"R G", {1, 1, 0}},
+                {"R B", {1, 0, 1}},
+                {"G B", {0, 1, 1}},
+                {"black: each its own; gray: none"}};
     }
     const Range range = rangeOf(shot, view, c);
     switch (view) {
-    case FalseColor::Confidence: return fmt::format("dark {:.0f}, bright {:.0f} frames", range.low, range.high);
+    case FalseColor::Confidence: return say(fmt::format("dark {:.0f}, bright {:.0f} frames", range.low, range.high));
     case FalseColor::Weight:
-        return fmt::format("W of reservoir {}: dark {:.3g}, bright {:.3g}", c, std::exp2(range.low),
-                           std::exp2(range.high));
+        return say(fmt::format("W of reservoir {}: dark {:.3g}, bright {:.3g}", c, std::exp2(range.low),
+                               std::exp2(range.high)));
     case FalseColor::Length:
-        return fmt::format("path of reservoir {}: dark 0, bright {:.0f} scattering events", c, range.high);
-    default: return fmt::format("spatial shifts of reservoir {}: dark all done, bright all failed", c);
+        return say(fmt::format("path of reservoir {}: dark 0, bright {:.0f} scattering events", c, range.high));
+    default: return say(fmt::format("spatial shifts of reservoir {}: dark all done, bright all failed", c));
     }
 }
 

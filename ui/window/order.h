@@ -1,6 +1,7 @@
 #pragma once
 // What the window asks of the render thread, and what comes back.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,8 +9,7 @@
 
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
-#include "passes/renderer.h"
-#include "shaders/shared/inspection.h"
+#include "passes/inspector.h"
 #include "ui/window/pose.h"
 
 namespace ui
@@ -17,6 +17,23 @@ namespace ui
 
 // The two settings that are compared. Alone, there is A.
 enum Side : int { A, B, SIDES };
+
+// What pictures come with.
+struct Inspect {
+    bool reservoirs = false;                      // what they hold
+    bool shifts = false;                          // how spatial shifts ended
+    std::optional<std::array<uint32_t, 2>> pixel; // of the full size: the paths that its reservoirs hold
+    bool operator==(const Inspect&) const = default;
+};
+
+// What is measured beside the pictures (studies.h).
+struct StudyOrder {
+    bool reference = false;   // a path traced reference that converges
+    bool correlation = false; // the autocovariance of successive frames
+    bool floor = false;       // color noise that no history removes
+    uint64_t savings = 0;     // how often "what does leaving out save" was asked
+    bool operator==(const StudyOrder&) const = default;
+};
 
 // What the window wants to see.
 struct Order {
@@ -26,7 +43,8 @@ struct Order {
     std::optional<Pose> pose;              // empty: the camera that the settings name
     bool moving = false;                   // the camera: single frames at a part of the resolution, no film
     bool paused = false;
-    bool inspect = false;  // pictures come with what the reservoirs hold
+    Inspect inspect;
+    StudyOrder studies;
     uint64_t restarts = 0; // how often "from the first frame again" was asked for
     uint64_t steps = 0;    // how many single frames were asked for while paused
     bool operator==(const Order&) const = default;
@@ -55,7 +73,10 @@ struct Shot {
     gpu::Adapter adapter;
     double frameMilliseconds = 0; // wall, from frame to frame
     double raysPerSecond = 0;
-    std::vector<shared::Inspection> reservoirs; // as passes::Inspector reads them; empty: not asked for, or none there
+    // As passes::Inspector reads them; empty: not asked for, or none there.
+    std::vector<shared::Inspection> reservoirs;
+    std::vector<passes::ShiftCounts> shifts;
+    std::vector<std::vector<shared::PathPoint>> paths;
 };
 using ShotPointer = std::shared_ptr<const Shot>;
 

@@ -1,5 +1,6 @@
 #include "ui/window/panel.h"
 
+#include "passes/variant.h"
 #include "ui/cli/presets.h"
 #include "ui/window/compare_room.h"
 #include "ui/window/pixel_room.h"
@@ -101,7 +102,40 @@ void drawRun(WindowState& state)
                "clipboard (F12).");
 }
 
-void drawFigures(const Shot& shot)
+// What the stages were compiled with, what was left out, and what that is worth.
+void drawVariant(WindowState& state, const Shot& shot)
+{
+    if (!ImGui::TreeNode("Compiled in, left out")) return;
+    static const std::map<std::string, std::string> MEANINGS = passes::variantMeanings();
+    ImGui::PushTextWrapPos();
+    for (const bool off : {true, false}) {
+        ImGui::TextColored(GRAY, "%s", off ? "left out" : "compiled in");
+        for (const auto& [name, value] : shot.stats.variant) {
+            if ((value == "off") != off) continue;
+            ImGui::Bullet();
+            ImGui::TextUnformatted(value == "on" || off ? MEANINGS.at(name).c_str()
+                                                        : fmt::format("{}: {}", MEANINGS.at(name), value).c_str());
+        }
+    }
+    if (button(
+            state.places, "What does that save?", "savings",
+            "Renders frames of A in turns with frames for which everything is compiled in, and compares their times."))
+        ++state.order.studies.savings;
+    if (const std::optional<Savings>& s = state.findings->savings)
+        ImGui::TextUnformatted(
+            fmt::format(
+                "A frame of A takes {:.3g} ms; with everything compiled in {:.3g} ms, {:.2f} times as long (wall, {} "
+                "frames each). The scene's tables: {:.1f} MB instead of {:.1f}.",
+                s->neededMilliseconds, s->everythingMilliseconds, s->everythingMilliseconds / s->neededMilliseconds,
+                s->frames, double(s->neededBytes) / 1e6, double(s->everythingBytes) / 1e6)
+                .c_str());
+    else if (state.order.studies.savings > 0)
+        ImGui::TextColored(GRAY, "Compiling everything to compare with.");
+    ImGui::PopTextWrapPos();
+    ImGui::TreePop();
+}
+
+void drawFigures(WindowState& state, const Shot& shot)
 {
     const passes::RenderStats& stats = shot.stats;
     ImGui::Text("%llu frames in %.1f s, %.1f ms each, %.2f M rays/s", static_cast<unsigned long long>(shot.frames),
@@ -113,7 +147,7 @@ void drawFigures(const Shot& shot)
     drawTable("Rays", stats.rays, "{}");
     drawTable("Shifts by outcome", stats.shifts, "{}");
     drawTable("Values not finite", stats.nonFinite, "{}");
-    drawTable("Compiled in, left out", stats.variant, "{}");
+    drawVariant(state, shot);
 }
 
 } // namespace
@@ -172,7 +206,7 @@ void drawPanel(WindowState& state)
     remember(state.places, "tone-curve");
     drawFalseColorRoom(state);
     ImGui::Separator();
-    if (shot) drawFigures(*shot);
+    if (shot) drawFigures(state, *shot);
     ImGui::PopItemWidth();
     ImGui::End();
 }
@@ -194,8 +228,9 @@ void drawHelp(WindowState& state)
                                "Tab            flip between the two pictures\n"
                                "F              freeze the picture as reference\n"
                                "P              error over time\n"
+                               "K              autocovariance of successive frames\n"
                                "X              the next false colors\n"
-                               "I              inspect the pixel under the mouse\n"
+                               "I              inspect the pixel under the mouse, and its paths\n"
                                "\n"
                                "Space          pause, go on\n"
                                "N              one frame\n"

@@ -22,6 +22,8 @@ size_t pixelAt(const From& from, uint32_t x, uint32_t y, uint32_t width, uint32_
 ScreenPicture screenOf(const Pictures& pictures, Source source, const View& view, const Tone& tone)
 {
     const ShotPointer shot = pictures.shotOf(source);
+    if (shot && view.falseColor == FalseColor::Floor)
+        if (const Floor* floor = pictures.floorOf(source)) return toScreen(floor->deviation, tone);
     if (shot && view.falseColor != FalseColor::Off) return falseColors(*shot, view.falseColor, view.reservoir);
     return toScreen(*pictures.of(source), tone);
 }
@@ -56,6 +58,11 @@ const image::Image* Pictures::of(Source source) const
 ShotPointer Pictures::shotOf(Source source) const
 {
     return source == Source::Reference ? nullptr : sides[source == Source::A ? A : B];
+}
+
+const Floor* Pictures::floorOf(Source source) const
+{
+    return source == Source::Reference ? nullptr : floors[source == Source::A ? A : B].get();
 }
 
 ScreenPicture compose(const Pictures& pictures, const View& view, const Tone& tone)

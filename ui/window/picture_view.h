@@ -5,21 +5,26 @@
 #include <memory>
 #include <string>
 
-#include "ui/window/order.h"
+#include "ui/window/findings.h"
 #include "ui/window/tone.h"
 
 namespace ui
 {
 
-struct Reference {
-    image::Image picture;
-    std::string name; // for people: a file, or what was frozen
-};
-using ReferencePointer = std::shared_ptr<const Reference>;
-
 enum class Source : int { A, B, Reference };
 enum class Layout : int { One, Split, Difference };
-enum class FalseColor : int { Off, Confidence, Weight, Agreement, Length, FailedShifts, NotFinite };
+enum class FalseColor : int {
+    Off,
+    Confidence,
+    Weight,
+    Agreement,
+    Length,
+    FailedShifts,
+    ShiftOutcomes,
+    Floor,
+    NotFinite
+};
+constexpr int FALSE_COLORS = int(FalseColor::NotFinite) + 1;
 
 struct View {
     Source first = Source::A, second = Source::B;
@@ -37,10 +42,12 @@ struct View {
 struct Pictures {
     ShotPointer sides[SIDES];
     ReferencePointer reference;
+    std::shared_ptr<const Floor> floors[SIDES];
     bool operator==(const Pictures&) const = default;
 
     const image::Image* of(Source source) const; // null: there is none
     ShotPointer shotOf(Source source) const;     // null: none, or a reference
+    const Floor* floorOf(Source source) const;   // null: none yet
 };
 
 // Empty (0 x 0) while there is no picture. Where one of two is missing, the other stands alone.

@@ -1,15 +1,16 @@
 #pragma once
-// The pixel under the mouse and what its reservoirs hold; the false colors.
+// Looking into the reservoirs: false colors of all pixels, the numbers of one, and its paths.
 
 #include "ui/window/window_state.h"
 
 namespace ui
 {
 
+Inspect inspectionFor(const WindowState& state); // what pictures must come with
 void drawFalseColorRoom(WindowState& state);
-void drawPixel(WindowState& state); // a window of its own, while state.pixel
+void drawPixel(WindowState& state);
 
-// Whether reservoirs must be read back for what is shown.
-bool wantsReservoirs(const WindowState& state);
+// The paths of the inspected pixel of the side that lies under it, over the picture between these corners.
+void drawPaths(const WindowState& state, ImVec2 low, ImVec2 high);
 
 } // namespace ui

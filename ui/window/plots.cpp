@@ -1,5 +1,7 @@
 #include "ui/window/plots.h"
 
+#include "ui/window/axes.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,24 +32,6 @@ constexpr Figure FIGURES[] = {
 };
 constexpr int PLOTTED = 5;
 
-struct Range { // of logarithms to base 10
-    double low = 1e30, high = -1e30;
-    void add(double value)
-    {
-        if (!(value > 0)) return;
-        low = std::min(low, std::log10(value));
-        high = std::max(high, std::log10(value));
-    }
-    void widen(double least)
-    {
-        if (low > high) low = high = 0;
-        const double missing = std::max(least - (high - low), 0.0);
-        low -= missing / 2;
-        high += missing / 2;
-    }
-    double at(double value) const { return (std::log10(value) - low) / (high - low); }
-};
-
 // Error at a time that a curve reached, between its points; 0 when it did not.
 double errorAt(const ErrorCurve& curve, double seconds, const Figure& figure)
 {
@@ -60,32 +44,14 @@ double errorAt(const ErrorCurve& curve, double seconds, const Figure& figure)
     return 0;
 }
 
-void drawAxes(ImDrawList& list, const Range& x, const Range& y, ImVec2 low, ImVec2 high)
-{
-    const ImU32 faint = IM_COL32(255, 255, 255, 38), words = IM_COL32(170, 170, 175, 255);
-    list.AddRectFilled(low, high, IM_COL32(12, 12, 14, 255));
-    for (int decade = int(std::ceil(x.low)); decade <= x.high; ++decade) {
-        const float at = low.x + float((decade - x.low) / (x.high - x.low)) * (high.x - low.x);
-        list.AddLine({at, low.y}, {at, high.y}, faint);
-        list.AddText({at + 2, high.y + 2}, words, fmt::format("{:g} s", std::pow(10.0, decade)).c_str());
-    }
-    for (int decade = int(std::ceil(y.low)); decade <= y.high; ++decade) {
-        const float at = high.y - float((decade - y.low) / (y.high - y.low)) * (high.y - low.y);
-        list.AddLine({low.x, at}, {high.x, at}, faint);
-        list.AddText({low.x + 3, at - ImGui::GetTextLineHeight()}, words, fmt::format("1e{}", decade).c_str());
-    }
-    list.AddRect(low, high, IM_COL32(255, 255, 255, 80));
-}
-
-void drawCurve(ImDrawList& list, const ErrorCurve& curve, const Figure& figure, const Range& x, const Range& y,
-               ImVec2 low, ImVec2 high, ImU32 color, float scale)
+void drawCurve(ImDrawList& list, const Axes& axes, const ErrorCurve& curve, const Figure& figure, ImU32 color,
+               float scale)
 {
     std::vector<ImVec2> points;
     for (const ErrorPoint& point : curve) {
         const double error = figure.of(point.metrics);
         if (!(error > 0) || !(point.seconds > 0)) continue;
-        points.emplace_back(low.x + float(x.at(point.seconds)) * (high.x - low.x),
-                            high.y - float(y.at(error)) * (high.y - low.y));
+        points.push_back(axes.at(point.seconds, error));
     }
     list.AddPolyline(points.data(), int(points.size()), color, ImDrawFlags_None, 1.5f * scale);
     if (!points.empty()) list.AddCircleFilled(points.back(), 3 * scale, color);
@@ -134,7 +100,9 @@ void drawErrorPlot(WindowState& state, const ErrorMeter& meter)
         ImGui::TextColored(colors::AMBER, "%s", complaint.c_str());
         ImGui::PopTextWrapPos();
     } else if (!state.pictures.reference) {
-        ImGui::TextUnformatted("No reference yet: freeze a picture (F), or drop an EXR or PNG into the window.");
+        ImGui::TextUnformatted(state.order.studies.reference
+                                   ? "The reference begins to converge."
+                                   : "No reference yet: freeze a picture (F), converge one, or drop an EXR or PNG.");
     } else {
         for (int i = 0; i < PLOTTED; ++i) {
             if (i > 0) ImGui::SameLine();
@@ -142,20 +110,22 @@ void drawErrorPlot(WindowState& state, const ErrorMeter& meter)
         }
     }
     const Figure& figure = FIGURES[plotted];
-    Range x, y;
+    Axes axes;
     for (const ErrorCurve& curve : curves)
-        for (const ErrorPoint& point : curve) x.add(point.seconds), y.add(figure.of(point.metrics));
-    x.widen(1);
-    y.widen(1);
+        for (const ErrorPoint& point : curve) axes.x.add(point.seconds), axes.y.add(figure.of(point.metrics));
+    axes.x.widen(1);
+    axes.y.widen(1);
     const float table = 15 * ImGui::GetFontSize();
     const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const ImVec2 high = {low.x + room.x - table, low.y + room.y - 2.6f * ImGui::GetTextLineHeight()};
     if (high.x > low.x + 40 && high.y > low.y + 40) {
         ImDrawList& list = *ImGui::GetWindowDrawList();
-        drawAxes(list, x, y, low, high);
+        axes.low = low;
+        axes.high = high;
+        axes.draw(list, " s");
         list.PushClipRect(low, high, true);
         for (const Side side : {A, B})
-            drawCurve(list, curves[side], figure, x, y, low, high, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]),
+            drawCurve(list, axes, curves[side], figure, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]),
                       state.scale);
         list.PopClipRect();
         std::string equal = "time is that of rendering alone";

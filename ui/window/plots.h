@@ -1,11 +1,12 @@
 #pragma once
-// Error over time, both axes logarithmic, and the figures beside it.
+// What is measured of the sides, both axes logarithmic.
 
 #include "ui/window/window_state.h"
 
 namespace ui
 {
 
-void drawErrorPlot(WindowState& state, const ErrorMeter& meter);
+void drawErrorPlot(WindowState& state, const ErrorMeter& meter); // against time, and figures beside it
+void drawCorrelationPlot(WindowState& state);                    // against M
 
 } // namespace ui

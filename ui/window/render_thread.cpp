@@ -67,6 +67,12 @@ std::shared_ptr<const SceneFacts> RenderThread::scene() const
     return sceneFacts_;
 }
 
+std::shared_ptr<const Findings> RenderThread::findings() const
+{
+    const std::lock_guard lock(mutex_);
+    return findings_;
+}
+
 std::string RenderThread::activity() const
 {
     const std::lock_guard lock(mutex_);
@@ -116,7 +122,8 @@ void RenderThread::run()
         {
             std::unique_lock lock(mutex_);
             const auto due = [&] {
-                const bool idle = !sides_[A] || (running_.paused && running_.steps >= wanted_.steps);
+                const bool idle =
+                    !sides_[A] || (running_.paused && running_.steps >= wanted_.steps && !studies_.busy());
                 return stop_ || news_ || !idle;
             };
             if (watcher_)
@@ -142,6 +149,7 @@ void RenderThread::run()
 void RenderThread::closeDevice()
 {
     compiler_.serve(nullptr);
+    studies_.clear();
     for (std::unique_ptr<Contender>& side : sides_) side.reset();
     device_.reset();
 }
@@ -183,6 +191,7 @@ void RenderThread::follow(const Order& order)
     if (changed) compileAhead(order);
     say("");
     renderAndPublish(order, changed);
+    study(order);
 }
 
 // The old pictures stay until the new ones are there.
@@ -200,6 +209,7 @@ void RenderThread::load(const Order& order)
         if (percent != shown) say(fmt::format("Building the BVH: {}%", shown = percent));
         if (percent >= 100) say("Compiling");
     });
+    studies_.clear();
     sides_[B].reset(); // of the old scene
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
@@ -220,8 +230,8 @@ void RenderThread::tune(const Order& order, Side side)
     }
     passes::Renderer& renderer = sides_[A]->renderer();
     const passes::Settings next = settingsOf(order, side);
-    const bool runs = contender && contender->renderer().settings() == next;
-    if (!runs && !compiler_.ready(renderer.stagesFor(next, order.moving))) {
+    const bool runs = contender && contender->runs(order);
+    if (!runs && !compiler_.ready(stagesFor(order, side, renderer))) {
         const std::lock_guard lock(mutex_);
         pending_ = true;
         return;
@@ -232,6 +242,42 @@ void RenderThread::tune(const Order& order, Side side)
     else
         contender =
             std::make_unique<Contender>(std::make_unique<passes::Renderer>(renderer, next), *scene_, order, side);
+}
+
+// Only while the camera rests, and when all that the sides need is compiled.
+void RenderThread::study(const Order& order)
+{
+    {
+        const std::lock_guard lock(mutex_);
+        if (pending_) return;
+    }
+    if (order.moving) return;
+    passes::Renderer& like = sides_[A]->renderer();
+    const CompileAhead::Stages stages = Studies::stagesFor(order, like);
+    if (!stages.empty() && !compiler_.ready(stages)) return;
+    compiler_.handOver(like.pipelines());
+    bool news = false;
+    try {
+        news = studies_.follow(order, like, *scene_);
+    } catch (const Error&) { // of memory: what is studied is given up, the pictures go on
+        studies_.clear();
+        const std::lock_guard lock(mutex_);
+        findings_ = studies_.findings();
+        good_.studies = {};
+        throw;
+    }
+    try {
+        news |= studies_.step();
+    } catch (const Error& error) {
+        closeDevice();
+        throw Error("{} R opens the device again.", error.what());
+    }
+    if (!news) return;
+    {
+        const std::lock_guard lock(mutex_);
+        findings_ = studies_.findings();
+    }
+    wake_();
 }
 
 // What one more click would ask for, the likeliest first.

@@ -14,6 +14,7 @@
 #include "ui/window/compile_ahead.h"
 #include "ui/window/contender.h"
 #include "ui/window/order.h"
+#include "ui/window/studies.h"
 
 namespace ui
 {
@@ -32,6 +33,7 @@ class RenderThread
 
     ShotPointer shot(Side side) const; // the latest; null before the first
     std::shared_ptr<const SceneFacts> scene() const;
+    std::shared_ptr<const Findings> findings() const; // of the studies; never null
     std::string activity() const; // what the order waits for, "Building the BVH: 40%"; empty: nothing
     std::string ahead() const;    // what is compiled for settings that nobody has asked for yet; empty: nothing
     // Why the last order could not be followed, once; `back` becomes what goes on instead.
@@ -43,6 +45,7 @@ class RenderThread
     void load(const Order& order);
     bool sameWorld(const Order& order) const;
     void tune(const Order& order, Side side);
+    void study(const Order& order);
     void compileAhead(const Order& order);
     void reloadShaders();
     void closeDevice();
@@ -62,6 +65,7 @@ class RenderThread
     bool pending_ = false; // a side goes on with its old settings until the new ones are compiled
     ShotPointer shots_[SIDES];
     std::shared_ptr<const SceneFacts> sceneFacts_;
+    std::shared_ptr<const Findings> findings_ = std::make_shared<const Findings>();
     std::string activity_;
     std::optional<std::string> failure_;
     Order good_; // the last order that was followed
@@ -73,6 +77,7 @@ class RenderThread
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<scene::Scene> scene_;
     std::unique_ptr<Contender> sides_[SIDES];
+    Studies studies_; // of the sides' scene and device
     Order running_;
     std::thread thread_; // last: starts when all else is there
 };

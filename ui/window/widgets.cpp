@@ -55,10 +55,11 @@ template <class T>
 requires std::is_enum_v<T>
 void edit(Places& places, const passes::Knob& knob, T& value, std::initializer_list<const char*> labels)
 {
-    ImGui::TextUnformatted(knob.name);
-    explain(knob.doc);
     int index = int(value);
     if (choose(places, knob.name, index, labels, knob.doc)) value = T(index);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(knob.name);
+    explain(knob.doc);
 }
 
 void edit(Places& places, const passes::Knob& knob, passes::Method& value)

@@ -67,6 +67,11 @@ class Window
         glfwSetDropCallback(frame_.window, [](GLFWwindow* window, int count, const char** files) {
             for (int i = 0; i < count; ++i) static_cast<Window*>(glfwGetWindowUserPointer(window))->open(files[i]);
         });
+        // ImGui 1.86 does not see a key that goes down and up within one frame, and frames take long on a busy machine.
+        glfwSetKeyCallback(frame_.window, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+            if (action == GLFW_PRESS)
+                static_cast<Window*>(glfwGetWindowUserPointer(window))->state_.keys.push_back({key, modifiers});
+        });
         ImGui_ImplGlfw_InitForVulkan(frame_.window, true); // after our own callbacks: it calls them too
         presenter_ = std::make_unique<Presenter>(frame_.window);
         if (!options.reference.empty()) loadReference(options.reference);
@@ -146,8 +151,13 @@ class Window
 
     void setReference(ReferencePointer reference)
     {
+        state_.order.studies.reference = false;
         state_.pictures.reference = std::move(reference);
-        if (!state_.pictures.reference) return;
+        if (state_.pictures.reference) showReference();
+    }
+
+    void showReference()
+    {
         state_.plots = true;
         if (!state_.order.rival) state_.view.second = Source::Reference;
     }
@@ -165,10 +175,15 @@ class Window
     {
         const ImGuiIO& io = ImGui::GetIO();
         if (io.WantCaptureKeyboard && io.WantTextInput) return;
-        const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+        for (const KeyPress& press : state_.keys) readKey(press);
+    }
+
+    void readKey(const KeyPress& press)
+    {
+        const auto pressed = [&](int key) { return press.key == key; };
         Requests& requests = state_.requests;
-        if (io.KeyCtrl) {
-            if (pressed(GLFW_KEY_Z)) (io.KeyShift ? requests.redo : requests.undo) = true;
+        if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
+            if (pressed(GLFW_KEY_Z)) ((press.modifiers & GLFW_MOD_SHIFT) != 0 ? requests.redo : requests.undo) = true;
             if (pressed(GLFW_KEY_Y)) requests.redo = true;
             return;
         }
@@ -182,10 +197,10 @@ class Window
         if (pressed(GLFW_KEY_TAB)) state_.view.flipped = !state_.view.flipped;
         if (pressed(GLFW_KEY_F)) requests.freeze = true;
         if (pressed(GLFW_KEY_P)) state_.plots = !state_.plots;
+        if (pressed(GLFW_KEY_K)) state_.correlation = !state_.correlation;
         if (pressed(GLFW_KEY_I)) state_.pixel = !state_.pixel;
         if (pressed(GLFW_KEY_H)) state_.hidden = !state_.hidden;
-        if (pressed(GLFW_KEY_X))
-            state_.view.falseColor = FalseColor((int(state_.view.falseColor) + 1) % (int(FalseColor::NotFinite) + 1));
+        if (pressed(GLFW_KEY_X)) state_.view.falseColor = FalseColor((int(state_.view.falseColor) + 1) % FALSE_COLORS);
     }
 
     void saveShot()
@@ -218,6 +233,7 @@ class Window
         if (!requests.preset.empty()) usePreset(requests.preset);
         if (requests.freeze) freeze();
         if (requests.dropReference) setReference(nullptr);
+        if (requests.converge) state_.order.studies.reference = true, state_.plots = true;
         if (requests.resetView) CameraHands::reset(state_.order);
         if (requests.screenshot) saveShot();
     }
@@ -250,10 +266,10 @@ class Window
     {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         const double x = (double(mouse.x) - area.x) / area.width, y = (double(mouse.y) - area.y) / area.height;
-        state_.hovered.reset();
+        state_.area = {area.x, area.y, area.width, area.height};
         if (area.width <= 0 || ImGui::GetIO().WantCaptureMouse || !(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
         const passes::Settings& full = state_.order.settings;
-        state_.hovered = {uint32_t(x * full.width), uint32_t(y * full.height)};
+        state_.inspected = {uint32_t(x * full.width), uint32_t(y * full.height)};
     }
 
     void takeNews()
@@ -265,9 +281,21 @@ class Window
             back.restarts = state_.order.restarts;
             state_.order = back;
             if (!back.rival) state_.editing = A;
+            if (!back.studies.correlation) state_.correlation = false; // they may be what failed
+            if (!back.studies.floor && state_.view.falseColor == FalseColor::Floor)
+                state_.view.falseColor = FalseColor::Off;
         }
         takeReference();
-        for (const Side side : {A, B}) state_.pictures.sides[side] = thread_.shot(side);
+        state_.findings = thread_.findings();
+        for (const Side side : {A, B}) {
+            state_.pictures.sides[side] = thread_.shot(side);
+            state_.pictures.floors[side] = state_.findings->floors[side];
+        }
+        if (state_.order.studies.reference && state_.pictures.reference != state_.findings->reference) {
+            const bool first = !state_.pictures.reference && state_.findings->reference;
+            state_.pictures.reference = state_.findings->reference;
+            if (first) showReference();
+        }
         state_.activity = thread_.activity();
         state_.ahead = thread_.ahead();
         const std::shared_ptr<const SceneFacts> facts = thread_.scene();
@@ -280,25 +308,43 @@ class Window
         facts_ = facts;
     }
 
+    // Looks at every pixel, so only when there is something new.
+    void updateLegend()
+    {
+        if (legendOf_ == std::pair(state_.pictures, state_.view)) return;
+        legendOf_ = {state_.pictures, state_.view};
+        const View& view = state_.view;
+        const ShotPointer shot = state_.pictures.shotOf(view.left());
+        state_.legend.clear();
+        if (shot && view.falseColor != FalseColor::Off)
+            state_.legend = legendOf(*shot, state_.pictures.floorOf(view.left()), view.falseColor, view.reservoir);
+    }
+
     void drawOnce()
     {
         ImGui_ImplVulkan_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
+        state_.places.clear();
         takeNews();
+        updateLegend();
         const Rectangle area = pictureArea();
         hover(area);
         drawPanel(state_);
         drawHelp(state_);
         drawPixel(state_);
         drawErrorPlot(state_, meter_);
+        drawCorrelationPlot(state_);
         const bool mouseTaken = drawOverPicture(state_, {float(area.x), float(area.y)},
                                                 {float(area.x + area.width), float(area.y + area.height)});
         readKeys();
         hands_.move(state_.order, facts_.get(), mouseTaken);
         if (hands_.bookmarks(state_, facts_.get(), memory_)) remember();
+        state_.keys.clear();
         answerRequests();
-        state_.order.inspect = wantsReservoirs(state_);
+        state_.order.inspect = inspectionFor(state_);
+        state_.order.studies.correlation = state_.correlation;
+        state_.order.studies.floor = state_.view.falseColor == FalseColor::Floor;
         thread_.order(state_.order);
         meter_.offer(state_.pictures);
 
@@ -355,6 +401,7 @@ class Window
     UndoList<SettingsPair> undo_;
     Pictures shown_;
     View shownView_;
+    std::pair<Pictures, View> legendOf_;
     Tone shownTone_;
     bool freshPresenter_ = false;
     std::string line_;

@@ -2,6 +2,8 @@
 
 #include "ui/window/false_color.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace ui
@@ -22,6 +24,7 @@ Json reportOf(const Shot& shot)
             {"camera_moved", shot.order.pose.has_value()},
             {"paused", shot.order.paused},
             {"reservoirs", reservoirCount(shot)},
+            {"shifts_read", shot.shifts.size()},
             {"memory_bytes", shot.stats.memoryBytes},
             {"variant", shot.stats.variant},
             {"nonfinite", shot.stats.nonFinite}};
@@ -31,6 +34,33 @@ Json reportOf(const View& view)
 {
     return {{"first", int(view.first)}, {"second", int(view.second)},          {"layout", int(view.layout)},
             {"wipe", view.wipe},        {"false_color", int(view.falseColor)}, {"flipped", view.flipped}};
+}
+
+Json reportOf(const Findings& findings)
+{
+    Json json = Json::object();
+    if (findings.reference) {
+        const Reference& reference = *findings.reference;
+        json["reference"] = {{"name", reference.name}, {"own_mse", reference.error.mse}};
+    }
+    for (const Side side : {A, B}) {
+        const char* name = side == A ? "a" : "b";
+        if (findings.curves[side])
+            for (const CorrelationCurve::Point& point : findings.curves[side]->points)
+                json["correlation"][name].push_back(
+                    {{"frame", point.frame},
+                     {"measured", point.measured.mean},
+                     {"standard_error", std::sqrt(point.measured.varianceOfMean)},
+                     {"predicted", point.predicted ? Json(*point.predicted) : Json(nullptr)}});
+        if (findings.floors[side]) json["floor"][name] = {{"frames", findings.floors[side]->frames}};
+    }
+    if (const std::optional<Savings>& savings = findings.savings)
+        json["savings"] = {{"frames", savings->frames},
+                           {"needed_ms", savings->neededMilliseconds},
+                           {"everything_ms", savings->everythingMilliseconds},
+                           {"needed_bytes", savings->neededBytes},
+                           {"everything_bytes", savings->everythingBytes}};
+    return json;
 }
 
 } // namespace
@@ -58,9 +88,12 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
         if (!curve.empty()) errors.update({{"relmse", curve.back().metrics.relmse}, {"mse", curve.back().metrics.mse}});
         json["errors"][side == A ? "a" : "b"] = errors;
     }
-    if (const ShotPointer& shot = state.pictures.sides[A]; shot && state.hovered && state.pixel) {
-        json["hovered"] = *state.hovered;
-        const size_t pixel = size_t{(*state.hovered)[1]} * shot->picture.width + (*state.hovered)[0];
+    json["findings"] = reportOf(*state.findings);
+    json["picture"] = state.area;
+    if (const ShotPointer& shot = state.pictures.sides[A]; shot && state.inspected && state.pixel) {
+        json["hovered"] = *state.inspected;
+        for (const auto& path : shot->paths) json["path_points"].push_back(path.size());
+        const size_t pixel = size_t{(*state.inspected)[1]} * shot->picture.width + (*state.inspected)[0];
         for (int c = 0; c < reservoirCount(*shot) && pixel < shot->picture.pixels.size(); ++c)
             json["inspected"].push_back(shot->reservoirs[size_t(c) * shot->picture.pixels.size() + pixel].confidence);
     }

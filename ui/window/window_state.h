@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ui/window/error_meter.h"
+#include "ui/window/false_color.h"
 #include "ui/window/order.h"
 #include "ui/window/picture_view.h"
 #include "ui/window/tone.h"
@@ -16,17 +17,24 @@ namespace ui
 
 // Done by the window after the widgets, once.
 struct Requests {
-    bool screenshot = false, resetView = false, freeze = false, dropReference = false, undo = false, redo = false;
+    bool screenshot = false, resetView = false, freeze = false, converge = false, dropReference = false;
+    bool undo = false, redo = false;
     std::string file; // to open, as if it had been dropped into the window
     std::string preset;
 };
 
+// A key that went down since the last time, with what was held then: GLFW's numbers.
+struct KeyPress {
+    int key = 0, modifiers = 0;
+};
+
 struct WindowState {
+    std::vector<KeyPress> keys;
     Order order;
     Side editing = A; // whose settings the panel shows
     Tone tone;
     View view;
-    bool help = false, plots = false, pixel = false, hidden = false;
+    bool help = false, plots = false, correlation = false, pixel = false, hidden = false;
     std::string message; // the last thing that the person should know
     std::vector<std::string> recent;
     bool canUndo = false, canRedo = false;
@@ -35,9 +43,12 @@ struct WindowState {
 
     // What there is to show this time.
     Pictures pictures;
+    std::shared_ptr<const Findings> findings = std::make_shared<const Findings>(); // never null
+    std::vector<LegendWord> legend;         // of the false colors of the picture on the left
+    std::array<int, 4> area = {0, 0, 0, 0}; // of the picture on the screen: left, top, width, height
     std::string activity, ahead;
-    std::optional<std::array<uint32_t, 2>> hovered; // pixel under the mouse
-    float scale = 1;                                // of the display
+    std::optional<std::array<uint32_t, 2>> inspected; // pixel that the mouse was over last
+    float scale = 1;                                  // of the display
     float panelWidth() const { return hidden ? 0 : 400 * scale; }
 
     passes::Settings& edited() { return editing == B && order.rival ? *order.rival : order.settings; }

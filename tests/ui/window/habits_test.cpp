@@ -2,7 +2,7 @@
 
 #include "tests/support/program.h"
 #include "tests/ui/window/window_fixture.h"
-#include "tests/ui/window/x_drop.h"
+#include "tests/ui/window/x_client.h"
 
 namespace
 {
@@ -34,10 +34,10 @@ TEST_F(WindowHabits, PresetsAndDropsSetWhatTheyNameAndUndoTakesItBack)
     ASSERT_TRUE(
         comes([](const Json& json) { return json["message"].get<std::string>().find("spam") != std::string::npos; }));
     EXPECT_EQ(report()["settings"]["max-confidence"], 7);
-    ASSERT_TRUE(until(asks("max-confidence", 32768), [] { key("ctrl+z"); }));
-    ASSERT_TRUE(until(asks("method", "pt"), [] { key("ctrl+z"); }));
+    ASSERT_TRUE(until(asks("max-confidence", 32768), [&] { key("ctrl+z"); }));
+    ASSERT_TRUE(until(asks("method", "pt"), [&] { key("ctrl+z"); }));
     ASSERT_TRUE(comes(runs("method", "pt")));
-    ASSERT_TRUE(until(asks("method", "rgb-restir"), [] { key("ctrl+y"); }));
+    ASSERT_TRUE(until(asks("method", "rgb-restir"), [&] { key("ctrl+y"); }));
     ASSERT_TRUE(comes(runs("method", "rgb-restir")));
     EXPECT_EQ(report()["settings"]["max-confidence"], 32768);
     EXPECT_EQ(close(), 0);
@@ -50,9 +50,9 @@ TEST_F(WindowHabits, ASceneCanBeDroppedABadOneChangesNothingAndTheRestIsRemember
     ASSERT_TRUE(comes(runs("method", "pt")));
     ASSERT_TRUE(dragUntilMoved());
     ASSERT_TRUE(
-        until([](const Json& json) { return json["message"] == "Bookmark 1 is here."; }, [] { key("ctrl+1"); }));
-    ASSERT_TRUE(until(asks("moved", false), [] { key("Home"); }));
-    ASSERT_TRUE(until(asks("moved", true), [] { key("1"); }));
+        until([](const Json& json) { return json["message"] == "Bookmark 1 is here."; }, [&] { key("ctrl+1"); }));
+    ASSERT_TRUE(until(asks("moved", false), [&] { key("Home"); }));
+    ASSERT_TRUE(until(asks("moved", true), [&] { key("1"); }));
 
     ASSERT_TRUE(dropFile("Trichrome", folder_ + "/broken.gltf"));
     ASSERT_TRUE(comes([](const Json& json) {

@@ -2,6 +2,8 @@
 
 #include "ui/window/picture_view.h"
 
+#include "ui/window/false_color.h"
+
 #include <gtest/gtest.h>
 
 namespace
@@ -65,4 +67,30 @@ TEST(PictureView, AgreementAndFailedShiftsHaveTheirColors)
     view = {.falseColor = ui::FalseColor::FailedShifts};
     EXPECT_LT(redAt(compose(pictures, view, PLAIN), 0, 0), 20);
     EXPECT_GT(redAt(compose(pictures, view, PLAIN), 1, 0), 240);
+}
+
+TEST(PictureView, ShiftsByOutcomeAndTheFloorHaveTheirColors)
+{
+    auto shot = std::make_shared<ui::Shot>();
+    shot->picture = {.width = 2, .height = 1, .pixels = std::vector<glm::vec3>(2)};
+    shot->order.settings.method = passes::Method::RgbRestir;
+    shot->shifts = {passes::ShiftCounts{4, 0, 0, 0, 0, 0}, passes::ShiftCounts{0, 0, 0, 0, 4, 0}}; // done; hidden
+    ui::Pictures pictures{.sides = {shot, nullptr}};
+    ui::View view{.falseColor = ui::FalseColor::ShiftOutcomes};
+    const ui::ScreenPicture screen = compose(pictures, view, PLAIN);
+    const auto words = legendOf(*shot, nullptr, view.falseColor, 0);
+    ASSERT_EQ(words.size(), 7u);
+    EXPECT_EQ(words[1].text, "done 50.0%");
+    EXPECT_EQ(words[5].text, "hidden 50.0%");
+    for (const size_t pixel : {size_t{0}, size_t{1}})
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(screen.rgba[4 * pixel + size_t(i)], 255 * words[pixel == 0 ? 1 : 5].color[i], 1);
+
+    view.falseColor = ui::FalseColor::Floor;
+    EXPECT_EQ(compose(pictures, view, PLAIN).width, 2u); // nothing known yet
+    ui::Floor floor{.deviation = {.width = 2, .height = 1, .pixels = {glm::vec3(0), glm::vec3(0.25f, 1, 0)}},
+                    .frames = 8};
+    pictures.floors[ui::A] = std::make_shared<const ui::Floor>(floor);
+    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 0, 0), 0);
+    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 1, 0), 137);
 }

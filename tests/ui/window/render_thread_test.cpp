@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -104,4 +105,70 @@ TEST(RenderThread, APictureThatIsTooLargeChangesNothing)
     EXPECT_EQ(back, order);
     const uint64_t frames = thread.shot(ui::A)->frames;
     EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->frames > frames; }));
+}
+
+// Each study says what is known otherwise: chains follow their law, RGB has no floor, the reference is the picture.
+TEST(RenderThread, StudiesAreMeasuredBesideThePictures)
+{
+    lost = false;
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.settings.method = passes::Method::RestirPt;
+    order.settings.shift = passes::Shift::Replay;
+    order.settings.spatial = 0;
+    order.settings.maxConfidence = 8;
+    order.rival = order.settings;
+    order.rival->method = passes::Method::RgbRestir;
+    order.studies = {.reference = true, .correlation = true, .floor = true};
+    order.paused = true; // the pictures: studies have the time to themselves
+    thread.order(order);
+    const auto curve = [&](ui::Side side) { return thread.findings()->curves[side]; };
+    ASSERT_TRUE(comes([&] {
+        const auto findings = thread.findings();
+        return findings->reference && findings->floors[ui::A] && findings->floors[ui::A]->frames >= 64 &&
+               findings->floors[ui::B] && curve(ui::A) && curve(ui::A)->batches >= 4 && curve(ui::B) &&
+               curve(ui::B)->batches >= 4;
+    }));
+    for (const ui::Side side : {ui::A, ui::B}) {
+        ASSERT_EQ(curve(side)->points.size(), 3u); // M = 2, 4, 8
+        for (const ui::CorrelationCurve::Point& point : curve(side)->points) {
+            ASSERT_TRUE(point.predicted);
+            const double error = std::sqrt(point.measured.varianceOfMean);
+            EXPECT_NEAR(point.measured.mean, *point.predicted, 5 * error + 0.02 * *point.predicted) << point.frame;
+            EXPECT_LT(error, 0.1 * *point.predicted);
+        }
+    }
+    EXPECT_GT(*curve(ui::A)->plateau, 0);
+    EXPECT_NEAR(*curve(ui::B)->plateau, 0, 1e-9 * *curve(ui::A)->plateau);
+
+    const std::shared_ptr<const ui::Findings> findings = thread.findings();
+    const auto meanOf = [](const image::Image& picture) {
+        glm::dvec3 sum(0);
+        for (const glm::vec3& p : picture.pixels) sum += glm::dvec3(p);
+        return (sum.r + sum.g + sum.b) / (3 * double(picture.pixels.size()));
+    };
+    EXPECT_GT(meanOf(findings->floors[ui::A]->deviation), 0);
+    EXPECT_EQ(findings->floors[ui::B]->frames, 0u);
+    EXPECT_EQ(meanOf(findings->floors[ui::B]->deviation), 0);
+    EXPECT_GT(findings->reference->error.mse, 0);
+    const double mean = meanOf(findings->reference->picture);
+    order.paused = false;
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::B)->frames >= 200; }));
+    EXPECT_NEAR(meanOf(thread.shot(ui::B)->picture), mean, 0.03 * mean);
+
+    order.studies.floor = false;
+    thread.order(order);
+    EXPECT_TRUE(comes([&] { return !thread.findings()->floors[ui::A] && thread.findings()->reference; }));
+
+    order.settings.method = passes::Method::Pt;
+    order.rival.reset();
+    order.studies = {.savings = 1};
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.findings()->savings && thread.findings()->savings->frames >= 8; }));
+    EXPECT_FALSE(thread.findings()->reference);
+    const ui::Savings savings = *thread.findings()->savings;
+    EXPECT_GT(savings.everythingBytes, savings.neededBytes); // rows for texture coordinates, at least
+    EXPECT_GT(savings.everythingMilliseconds, 0);
+    EXPECT_GT(savings.neededMilliseconds, 0);
 }

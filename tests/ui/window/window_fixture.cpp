@@ -77,6 +77,11 @@ void WindowTest::view(const std::vector<std::string>& more, const std::string& s
 int WindowTest::close()
 {
     kill(window_, SIGTERM);
+    return waitForEnd();
+}
+
+int WindowTest::waitForEnd()
+{
     int status = 0;
     waitpid(window_, &status, 0);
     window_ = 0;
@@ -139,25 +144,36 @@ void WindowTest::click(const std::string& widget) const
 {
     const Json place = report()["places"][widget];
     ASSERT_TRUE(place.is_array()) << widget;
-    shell(fmt::format("xdotool mousemove {} {} sleep 0.2 click 1", place[0].get<int>(), place[1].get<int>()));
+    shell(fmt::format("xdotool mousemove {} {} sleep 0.1 click 1", place[0].get<int>(), place[1].get<int>()));
 }
 
-void WindowTest::key(const std::string& name)
+std::array<int, 2> WindowTest::inPicture(double x, double y) const
 {
-    shell("xdotool mousemove 900 400 sleep 0.1 search --name Trichrome windowfocus sleep 0.1 key " + name);
+    const Json area = report().value("picture", Json({0, 0, 0, 0}));
+    return {int(area[0].get<double>() + x * area[2].get<double>()),
+            int(area[1].get<double>() + y * area[3].get<double>())};
+}
+
+void WindowTest::key(const std::string& name) const
+{
+    const auto [x, y] = inPicture(0.7, 0.6);
+    shell(fmt::format("xdotool mousemove {} {} search --name Trichrome windowfocus sleep 0.05 key {}", x, y, name));
 }
 
 void WindowTest::dragAcross(int fromX, int toX, int y) const
 {
-    shell(fmt::format("xdotool mousemove {0} {2} sleep 0.3 mousedown 1 sleep 0.3 mousemove {3} {2} sleep 0.3 "
-                      "mousemove {1} {2} sleep 0.3 mouseup 1",
+    shell(fmt::format("xdotool mousemove {0} {2} sleep 0.15 mousedown 1 sleep 0.15 mousemove {3} {2} sleep 0.15 "
+                      "mousemove {1} {2} sleep 0.15 mouseup 1",
                       fromX, toX, y, (fromX + toX) / 2));
 }
 
 testing::AssertionResult WindowTest::dragUntilMoved() const
 {
     return until([](const Json& json) { return json["camera_moved"] == true && json["moving"] == false; },
-                 [&] { dragAcross(900, 960, 300); });
+                 [&] {
+                     const auto from = inPicture(0.7, 0.3), to = inPicture(0.8, 0.3);
+                     dragAcross(from[0], to[0], from[1]);
+                 });
 }
 
 WindowTest::Screen WindowTest::screen() const

@@ -2,6 +2,7 @@
 // The window in a virtual display of its own, driven by a real mouse and keyboard, judged by what its frames report and
 // by what is on the screen.
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,7 +25,8 @@ class WindowTest : public testing::Test
 
     // Opens the window on a small picture of the Cornell box, quick on any device; the words come after.
     void view(const std::vector<std::string>& more = {}, const std::string& scene = "cornell");
-    int close(); // SIGTERM; the exit code
+    int close();      // SIGTERM; the exit code
+    int waitForEnd(); // of itself; likewise
     bool alive() const;
 
     Json report() const;
@@ -38,9 +40,11 @@ class WindowTest : public testing::Test
                           const Json& value); // what hands have set, a setting or another thing
 
     void click(const std::string& widget) const;
-    static void key(const std::string& name); // as xdotool calls it; the mouse is over the picture
+    void key(const std::string& name) const; // as xdotool calls it; the mouse is over the picture
     void dragAcross(int fromX, int toX, int y) const;
-    testing::AssertionResult dragUntilMoved() const;
+    testing::AssertionResult dragUntilMoved() const; // in the picture, right of its middle
+    std::array<int, 2>
+    inPicture(double x, double y) const; // on the screen; (0, 0) is the upper left corner, (1, 1) the lower right
 
     struct Screen {
         int width = 0, height = 0;

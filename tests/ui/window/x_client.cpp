@@ -1,4 +1,4 @@
-#include "tests/ui/window/x_drop.h"
+#include "tests/ui/window/x_client.h"
 
 #include <chrono>
 #include <cstring>
@@ -108,4 +108,15 @@ bool dropFile(const std::string& windowTitle, const std::string& file)
     const bool dropped = target && Source(display, target, "file://" + file + "\r\n").drop();
     XCloseDisplay(display);
     return dropped;
+}
+
+void setDpi(int dotsPerInch)
+{
+    Display* display = XOpenDisplay(nullptr);
+    if (!display) return;
+    const std::string words = "Xft.dpi:\t" + std::to_string(dotsPerInch) + "\n";
+    XChangeProperty(display, DefaultRootWindow(display), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(words.data()), int(words.size()));
+    XSetCloseDownMode(display, RetainPermanent); // else the server forgets with its last client
+    XCloseDisplay(display);
 }

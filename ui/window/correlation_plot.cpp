@@ -1,0 +1,96 @@
+#include "ui/window/plots.h"
+
+#include "ui/window/axes.h"
+
+namespace ui
+{
+
+namespace
+{
+
+void drawCurve(ImDrawList& list, const Axes& axes, const CorrelationCurve& curve, ImU32 color, float scale)
+{
+    std::vector<ImVec2> measured;
+    for (const CorrelationCurve::Point& point : curve.points) {
+        if (!(point.measured.mean > 0)) continue;
+        const ImVec2 at = axes.at(point.frame, point.measured.mean);
+        measured.push_back(at);
+        list.AddCircleFilled(at, 3 * scale, color);
+        const statistics::Interval interval = statistics::meanInterval(point.measured);
+        if (interval.low > 0) // a bar without a lower end says little on a logarithm
+            list.AddLine(axes.at(point.frame, interval.low), axes.at(point.frame, interval.high), color, scale);
+    }
+    list.AddPolyline(measured.data(), int(measured.size()), color, ImDrawFlags_None, 1.5f * scale);
+    for (size_t i = 1; i < curve.points.size(); ++i) { // dashes: half of each piece
+        const CorrelationCurve::Point &a = curve.points[i - 1], &b = curve.points[i];
+        if (!a.predicted || !b.predicted || !(*a.predicted > 0) || !(*b.predicted > 0)) continue;
+        const ImVec2 from = axes.at(a.frame, *a.predicted), to = axes.at(b.frame, *b.predicted);
+        constexpr int DASHES = 6;
+        for (int dash = 0; dash < DASHES; ++dash) {
+            const float t = float(dash) / DASHES, u = (float(dash) + 0.5f) / DASHES;
+            list.AddLine({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)},
+                         {from.x + u * (to.x - from.x), from.y + u * (to.y - from.y)}, IM_COL32(255, 255, 255, 150),
+                         scale);
+        }
+    }
+}
+
+std::string sentenceOf(const WindowState& state, Side side)
+{
+    const char* name = side == A ? "A" : "B";
+    const std::shared_ptr<const CorrelationCurve>& curve = state.findings->curves[side];
+    const passes::Settings settings = settingsOf(state.order, side);
+    if (settings.method == passes::Method::Pt) return fmt::format("{}: the path tracer's frames are independent", name);
+    if (settings.maxConfidence < 2) return fmt::format("{}: M_c is 1, so there is no history", name);
+    if (!curve || curve->points.empty()) return fmt::format("{}: no point yet", name);
+    std::string text = fmt::format("{}: {} x {} pixels, {} runs, {} batches done", name, curve->width, curve->height,
+                                   curve->runs, curve->batches);
+    if (curve->plateau) text += fmt::format("; levels off at P = {:.2g}", *curve->plateau);
+    return text;
+}
+
+} // namespace
+
+void drawCorrelationPlot(WindowState& state)
+{
+    if (!state.correlation) return;
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const ImVec2 wanted = {std::min(520 * state.scale, screen.x - 20), std::min(330 * state.scale, screen.y - 20)};
+    ImGui::SetNextWindowSize(wanted, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos({screen.x - wanted.x - 10, 10}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Autocovariance of the frames M-1 and M", &state.correlation,
+                     ImGuiWindowFlags_NoFocusOnAppearing)) {
+        for (const Side side : {A, B}) {
+            if (side == B && !state.order.rival) continue;
+            ImGui::PushTextWrapPos();
+            ImGui::TextColored(colors::SIDES[side], "%s", sentenceOf(state, side).c_str());
+            ImGui::PopTextWrapPos();
+        }
+        ImGui::TextColored(colors::GRAY, "Solid: measured, with 95%% intervals. Dashed: predicted by the law.");
+        Axes axes;
+        for (const auto& curve : state.findings->curves)
+            for (size_t i = 0; curve && i < curve->points.size(); ++i) {
+                const CorrelationCurve::Point& point = curve->points[i];
+                axes.x.add(point.frame);
+                axes.y.add(point.measured.mean);
+                axes.y.add(point.predicted.value_or(0));
+            }
+        axes.x.widen(1);
+        axes.y.widen(1);
+        const ImVec2 room = ImGui::GetContentRegionAvail();
+        axes.low = ImGui::GetCursorScreenPos();
+        axes.high = {axes.low.x + room.x, axes.low.y + room.y - 1.3f * ImGui::GetTextLineHeight()};
+        if (axes.high.x > axes.low.x + 40 && axes.high.y > axes.low.y + 40) {
+            ImDrawList& list = *ImGui::GetWindowDrawList();
+            axes.draw(list, "");
+            list.PushClipRect(axes.low, axes.high, true);
+            for (const Side side : {A, B})
+                if (const auto& curve = state.findings->curves[side])
+                    drawCurve(list, axes, *curve, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]), state.scale);
+            list.PopClipRect();
+        }
+    }
+    ImGui::End();
+}
+
+} // namespace ui
