@@ -109,11 +109,13 @@ def percentile(values, p):
 
 def latency(arguments, display, folder):
     window = Window(arguments.program, arguments.scene, folder, ["--size", arguments.size, "--method", "rgb-restir"])
-    window.wait(lambda report: report["frames"] > 1 and not report["ahead"])
+    window.wait(lambda report: report["frames"] > 1)
     x, y = window.report()["places"]["screenshot"]
     corner = (x - 15, y - 8)  # of the button, beside its word
     times = []
+    meanwhile = set()
     for i in range(arguments.samples):
+        meanwhile.add(window.report()["ahead"] != "")
         display.move(900, 600)
         time.sleep(0.25 + 0.1 * random.random())
         before = display.pixel(*corner)
@@ -127,13 +129,14 @@ def latency(arguments, display, folder):
         "scene": arguments.scene, "size": arguments.size, "samples": len(times),
         "frame_ms": 1000 * report["seconds"] / report["frames"],
         "p50_ms": percentile(times, 0.5), "p99_ms": percentile(times, 0.99), "max_ms": max(times),
+        "compiling_ahead_meanwhile": sorted(meanwhile), "load": os.getloadavg(),
     }  # fmt: skip
     window.close()
     return result
 
 
 def toggle(arguments, display, folder):
-    result = {"scene": arguments.scene, "size": arguments.size}
+    result = {"scene": arguments.scene, "size": arguments.size, "load": os.getloadavg()}
     cache = {"MESA_SHADER_CACHE_DIR": str(folder / "mesa"), "XDG_CACHE_HOME": str(folder / "cache")}
     window = Window(arguments.program, arguments.scene, folder, ["--size", arguments.size], cache)
     window.wait(lambda report: report["frames"] > 0)

@@ -98,6 +98,7 @@ void drawCompareRoom(WindowState& state)
             state.editing = Side(editing);
     }
     const bool reference = state.pictures.reference != nullptr;
+    ImGui::AlignTextToFramePadding();
     ImGui::TextColored(colors::GRAY, "reference");
     ImGui::SameLine();
     if (button(state.places, "Freeze", "freeze",
@@ -147,7 +148,7 @@ bool drawOverPicture(WindowState& state, ImVec2 low, ImVec2 high)
     View& view = state.view;
     const bool left = there(state, view.left()), right = there(state, view.right());
     const float top = low.y + 6;
-    if (!state.legend.empty()) drawLegend(state.legend, {low.x + 8, high.y - 8});
+    if (!state.legend.empty() && state.hidden) drawLegend(state.legend, {low.x + 8, high.y - 8});
     drawPaths(state, low, high);
     if (!left || !right) return false; // only one picture: nothing to tell apart
     if (view.layout == Layout::One) {

@@ -17,7 +17,10 @@ using namespace colors;
 
 void drawBadge(const ShotPointer& shot)
 {
-    if (!shot) return;
+    if (!shot) {
+        ImGui::TextColored(GRAY, "No picture yet");
+        return;
+    }
     uint64_t lost = 0;
     for (const auto& [stage, count] : shot->stats.nonFinite) lost += count;
     if (lost > 0) {

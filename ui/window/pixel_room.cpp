@@ -20,13 +20,23 @@ std::string targetName(const glm::vec3& target)
     return name == "RGB" ? "luminance" : name;
 }
 
-void drawReservoirs(const Shot& shot, uint32_t x, uint32_t y)
+// What is still being compiled is said, since that can take a while on CPU drivers.
+std::string notReadYet(const WindowState& state, const char* what)
 {
+    const std::string& compiled = state.activity.empty() ? state.ahead : state.activity;
+    return fmt::format("{}: not read yet{}{}", what, compiled.empty() ? "" : ". ", compiled);
+}
+
+void drawReservoirs(const WindowState& state, const Shot& shot, uint32_t x, uint32_t y)
+{
+    if (shot.paths.empty()) ImGui::TextColored(colors::AMBER, "%s", notReadYet(state, "paths").c_str());
+    if (shot.order.settings.method == passes::Method::Pt) {
+        ImGui::TextColored(colors::GRAY, "no reservoirs: the path tracer has none");
+        return;
+    }
     const int count = reservoirCount(shot);
     if (count == 0) {
-        ImGui::TextColored(colors::GRAY, "no reservoirs: %s",
-                           shot.order.settings.method == passes::Method::Pt ? "the path tracer has none"
-                                                                            : "not read yet");
+        ImGui::TextColored(colors::AMBER, "%s", notReadYet(state, "reservoirs").c_str());
         return;
     }
     const passes::Estimator& estimator = passes::estimatorOf(shot.order.settings.method);
@@ -96,6 +106,24 @@ void drawPath(ImDrawList& list, const std::vector<shared::PathPoint>& path, ImVe
     }
 }
 
+// In the panel, where no window covers it: word by word, in lines as wide as it.
+void drawLegend(const std::vector<LegendWord>& words)
+{
+    const float gap = ImGui::GetFontSize();
+    float left = 0;
+    for (const LegendWord& word : words) {
+        const float width = ImGui::CalcTextSize(word.text.c_str()).x;
+        if (left > 0 && width < left)
+            ImGui::SameLine(0, gap);
+        else
+            left = ImGui::GetContentRegionAvail().x;
+        left -= width + gap;
+        ImGui::PushTextWrapPos();
+        ImGui::TextColored({word.color.r, word.color.g, word.color.b, 1}, "%s", word.text.c_str());
+        ImGui::PopTextWrapPos();
+    }
+}
+
 } // namespace
 
 Inspect inspectionFor(const WindowState& state)
@@ -123,6 +151,7 @@ void drawFalseColorRoom(WindowState& state)
         ImGui::SliderInt("of reservoir", &state.view.reservoir, 0, count - 1);
         state.view.reservoir = std::clamp(state.view.reservoir, 0, count - 1);
     }
+    drawLegend(state.legend);
     ImGui::Checkbox("inspect the pixel under the mouse (I)", &state.pixel);
     remember(state.places, "pixel");
     explain(
@@ -134,7 +163,7 @@ void drawPixel(WindowState& state)
 {
     if (!state.pixel) return;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({state.panelWidth() + 10, screen.y - 200 * state.scale}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos({state.panelWidth() + 10, 10}, ImGuiCond_FirstUseEver); // plots open at the bottom
     ImGui::SetNextWindowSizeConstraints({200, 0}, {screen.x, screen.y});
     if (ImGui::Begin("Pixel", &state.pixel, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
         if (!state.inspected) {
@@ -156,7 +185,7 @@ void drawPixel(WindowState& state)
                                            .c_str());
                 if (const ShotPointer shot = state.pictures.shotOf(source)) {
                     ImGui::PushID(int(source));
-                    drawReservoirs(*shot, x, y);
+                    drawReservoirs(state, *shot, x, y);
                     ImGui::PopID();
                 }
             }

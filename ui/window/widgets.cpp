@@ -55,11 +55,12 @@ template <class T>
 requires std::is_enum_v<T>
 void edit(Places& places, const passes::Knob& knob, T& value, std::initializer_list<const char*> labels)
 {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(colors::GRAY, "%s", knob.name);
+    explain(knob.doc);
+    ImGui::SameLine(std::max(4.2f * ImGui::GetFontSize(), ImGui::CalcTextSize(knob.name).x + ImGui::GetFontSize()));
     int index = int(value);
     if (choose(places, knob.name, index, labels, knob.doc)) value = T(index);
-    ImGui::SameLine();
-    ImGui::TextUnformatted(knob.name);
-    explain(knob.doc);
 }
 
 void edit(Places& places, const passes::Knob& knob, passes::Method& value)

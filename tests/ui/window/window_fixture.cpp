@@ -105,7 +105,7 @@ nlohmann::json WindowTest::report() const
 testing::AssertionResult WindowTest::comes(const Condition& condition) const
 {
     Json last;
-    for (int i = 0; i < 3600; ++i, std::this_thread::sleep_for(50ms)) {
+    for (int i = 0; i < 12000; ++i, std::this_thread::sleep_for(50ms)) {
         last = report();
         if (last.is_object() && condition(last)) return testing::AssertionSuccess();
     }
