@@ -72,7 +72,7 @@ PixelBytes pixelBytes(const Settings& settings)
 // pixels in 720 lines. Measured in cornell with 72 lines: 2 pixels have a quarter of the relative MSE of 20 (LOG.md).
 float neighborRadius(const Settings& settings)
 {
-    return settings.spatialRadius > 0 ? settings.spatialRadius : std::max(2.0f, float(settings.height) / 36);
+    return settings.spatialRadius > 0 ? settings.spatialRadius : std::max(2.0f, float(settings.height) / 18);
 }
 
 } // namespace

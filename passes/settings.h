@@ -71,7 +71,7 @@ void visitSettings(AnySettings& s, Visitor&& visit)
     visit(Knob{"max-confidence", 1, 1048576, "frames", "M_c of ReSTIR: the most that history may count against a new frame. Larger: less noise, more correlation between frames. Unbiased, free."}, s.maxConfidence);
     visit(Knob{"temporal", 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
     visit(Knob{"spatial", 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
-    visit(Knob{"spatial-radius", 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: a 36th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
+    visit(Knob{"spatial-radius", 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
     visit(Knob{"max-bounces", 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
     visit(Knob{"pixel-filter", 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
     visit(Knob{"size", 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});

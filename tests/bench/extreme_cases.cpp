@@ -292,7 +292,7 @@ void addHistories(std::vector<ExtremeCase>& cases)
         c.settings.height = height;
         c.runs = runs;
         if (width * height == 1) c.truth = referenceWith(100 * REFERENCE_SAMPLES);
-        if (height == 4096) c.truth = referenceWith(100);
+        if (height == 4096) c.truth = referenceWith(1000);
         cases.push_back(c);
     }
     // The film's sum of all frames, of reservoirs that stand for all of them.

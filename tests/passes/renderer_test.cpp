@@ -241,7 +241,7 @@ TEST_F(RendererTest, RunsAreIndependentAndAlike)
     EXPECT_GT(*std::ranges::min_element(p), statistics::sidakLevel(1e-3, p.size()));
 }
 
-TEST_F(RendererTest, NeighborsLieWithinAThirtySixthOfTheHeightUnlessToldOtherwise)
+TEST_F(RendererTest, NeighborsLieWithinAnEighteenthOfTheHeightUnlessToldOtherwise)
 {
     passes::Settings settings = settings_;
     settings.method = passes::Method::RestirPt;
@@ -254,8 +254,8 @@ TEST_F(RendererTest, NeighborsLieWithinAThirtySixthOfTheHeightUnlessToldOtherwis
         return frames(renderer, 2);
     };
     const Pixels byHeight = at(0);
-    EXPECT_EQ(byHeight, at(3));
-    EXPECT_NE(byHeight, at(4));
+    EXPECT_EQ(byHeight, at(6));
+    EXPECT_NE(byHeight, at(7));
 }
 
 TEST_F(RendererTest, KnowsWherePointsWereSeenBefore)
