@@ -4,8 +4,8 @@
   scaling.py TRICHROME DIR [SERIES...]     series: triangles, pixels, bounces, lights, neighbors, channels, confidence
 
 Writes DIR/scaling.csv (a line a point, kept when measured again), DIR/scaling.svg (by gnuplot), and the tables to stdout.
-Time is processor time of a frame: of a long render less that of a short one, so that start-up and other programs do not
-count; the median of --rounds. Scenes of many triangles and lights are written as glTF: tiles, each a node.
+Time is the stages' time of a frame: that of a long render less that of a short one, so that first frames do not count; the
+median of --rounds. Wants a quiet machine. Scenes of many triangles and lights are written as glTF: tiles, each a node.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import struct
 import subprocess
 import sys
 
-COLUMNS = ["series", "method", "x", "cpu_ms", "rays", "device_bytes", "peak_bytes", "bvh_seconds"]
+COLUMNS = ["series", "method", "x", "ms", "rays", "device_bytes", "peak_bytes", "bvh_seconds"]
 BASE = {"size": "160x90", "max-bounces": 3, "spatial": 3, "shift": "hybrid", "max-confidence": 20}
 METHODS = ["pt", "restir-pt", "rgb-restir"]
 CHANNELS = {"restir-pt": 1, "grouped-restir": 2, "rgb-restir": 3}
@@ -115,7 +115,7 @@ def pointsOf(series, folder):
 
 
 def render(program, scene, method, settings, frames, folder):
-    """Processor seconds of the whole program, its peak memory, and its --stats."""
+    """Milliseconds of all frames' stages, the program's peak memory, and its --stats."""
     stats = folder / "stats.json"
     command = [program, "render", scene, "--quiet", "-o", str(folder / "picture.exr"), "--stats", str(stats), "--method", method,
                "--frames", str(frames), "--orbit", "0.3"]
@@ -126,20 +126,20 @@ def render(program, scene, method, settings, frames, folder):
     child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode != 0:
         sys.exit(f"scaling.py: {' '.join(command)} ended with {child.returncode}.")
-    return usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss, json.loads(stats.read_text())
+    found = json.loads(stats.read_text())
+    return frames * sum(found["stage_ms"].values()), 1024 * usage.ru_maxrss, found
 
 
 def measure(program, scene, method, settings, rounds, folder):
-    few = 2
-    short, _, stats = render(program, scene, method, settings, few, folder)  # also fills the pipelines' cache
-    milliseconds = sum(stats["stage_ms"].values())
-    frames = few + max(4, min(400, int(4000 / max(milliseconds, 0.1))))
+    few = 3
+    milliseconds, _, _ = render(program, scene, method, settings, few, folder)  # also fills the cache of pipelines
+    frames = few + max(5, min(400, int(4000 * few / max(milliseconds, 0.1))))
     times = []
     for _ in range(rounds):
         short, _, _ = render(program, scene, method, settings, few, folder)
         long, peak, stats = render(program, scene, method, settings, frames, folder)
         times.append((long - short) / (frames - few))
-    return {"cpu_ms": round(1000 * statistics.median(times), 4), "rays": round(sum(stats["rays"].values()) / frames),
+    return {"ms": round(statistics.median(times), 4), "rays": round(sum(stats["rays"].values()) / frames),
             "device_bytes": stats["memory_bytes"], "peak_bytes": peak, "bvh_seconds": round(stats["bvh_seconds"], 3)}
 
 
@@ -162,7 +162,7 @@ def report(rows, folder):
         print("| method | x: ms | exponent of the upper half | device memory |\n|---|---|---|---|")
         for method, found in methods.items():
             found.sort(key=lambda row: float(row["x"]))
-            pairs = [(float(row["x"]), float(row["cpu_ms"])) for row in found]
+            pairs = [(float(row["x"]), float(row["ms"])) for row in found]
             cells = ", ".join(f"{x:g}: {ms:.3g}" for x, ms in pairs)
             memory = f"{float(found[0]['device_bytes']) / 1e6:.3g} to {float(found[-1]['device_bytes']) / 1e6:.3g} MB"
             print(f"| {method} | {cells} | {exponent(pairs):.2f} | {memory} |")
@@ -172,7 +172,7 @@ def report(rows, folder):
                            f"title '{method}'" for method in methods)
         plots.append(("set logscale xy" if logarithmic else "unset logscale; set yrange [0:*]") +
                      f"\nset title '{series}'\nplot {curves}\nunset yrange; set autoscale\n")
-    script = "set terminal svg size 1100,620 font 'sans,11'\nset output 'scaling.svg'\nset ylabel 'ms (processor)'\n" \
+    script = "set terminal svg size 1100,620 font 'sans,11'\nset output 'scaling.svg'\nset ylabel 'ms'\n" \
              "set key top left\nset grid\nset multiplot layout 2,4\n" + "".join(plots)
     subprocess.run(["gnuplot"], input=script.encode(), cwd=folder, check=True)
 
