@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of RESULTS.md, "Pictures, as in the paper": tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
+# PSNR and SSIM as in the paper (not yet in RESULTS.md): tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
 # Temporal reuse alone, random replay, resting camera, after FRAMES frames of history (SIZE, FRAMES, RUNS, REFERENCE_FRAMES
 # shorten or lengthen it; SPONZA names that scene's file).
 set -euo pipefail
