@@ -39,7 +39,7 @@ ui::Order small()
 
 bool comes(const std::function<bool()>& condition)
 {
-    for (int i = 0; i < 60000; ++i, std::this_thread::sleep_for(10ms))
+    for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(10ms))
         if (condition()) return true;
     return false;
 }

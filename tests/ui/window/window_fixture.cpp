@@ -105,7 +105,7 @@ nlohmann::json WindowTest::report() const
 testing::AssertionResult WindowTest::comes(const Condition& condition) const
 {
     Json last;
-    for (int i = 0; i < 12000; ++i, std::this_thread::sleep_for(50ms)) {
+    for (int i = 0; i < 3600; ++i, std::this_thread::sleep_for(50ms)) {
         last = report();
         if (last.is_object() && condition(last)) return testing::AssertionSuccess();
     }
@@ -114,14 +114,14 @@ testing::AssertionResult WindowTest::comes(const Condition& condition) const
 
 testing::AssertionResult WindowTest::until(const Condition& condition, const std::function<void()>& act) const
 {
-    for (int attempt = 0; attempt < 100; ++attempt) {
+    for (int attempt = 0; attempt < 6; ++attempt) {
         act();
         for (int i = 0; i < 120; ++i, std::this_thread::sleep_for(50ms)) {
             const Json json = report();
             if (json.is_object() && condition(json)) return testing::AssertionSuccess();
         }
     }
-    return testing::AssertionFailure() << "it was never taken; the last report is " << report().dump(1) << log();
+    return testing::AssertionFailure() << "six tries, and the last report is " << report().dump(1) << log();
 }
 
 WindowTest::Condition WindowTest::runs(const std::string& setting, const Json& value)
