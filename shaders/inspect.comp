@@ -23,13 +23,12 @@ uvec2 countSpatialShifts(uint pixel, uint c)
 {
     uvec2 triedFailed = uvec2(0u);
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
-        uint neighbor = neighbors[slot * pixelCount() + pixel];
+        uint neighbor = neighbors[slotRow(pixel, slot)];
         if (neighbor == NO_NEIGHBOR) continue;
-        uint row = (slot * RESERVOIR_COUNT + c) * pixelCount();
         bool here = targetOf(c, loadReservoirsHead(neighbor, c).f) > 0.0;
         bool there = targetOf(c, loadReservoirsHead(pixel, c).f) > 0.0;
-        triedFailed += uvec2(here, here && targetOf(c, shifted[row + neighbor].xyz) == 0.0) +
-                       uvec2(there, there && targetOf(c, shifted[row + pixel].xyz) == 0.0);
+        triedFailed += uvec2(here, here && targetOf(c, shifted[shiftedRow(neighbor, slot, c)].xyz) == 0.0) +
+                       uvec2(there, there && targetOf(c, shifted[shiftedRow(pixel, slot, c)].xyz) == 0.0);
     }
     return triedFailed;
 }

@@ -21,7 +21,7 @@ void main()
     if (at.x >= frame.width || at.y >= frame.height) return;
     uint pixel = at.y * frame.width + at.x;
 
-    uint neighbor = neighbors[slot * pixelCount() + pixel];
+    uint neighbor = neighbors[slotRow(pixel, slot)];
     if (neighbor != NO_NEIGHBOR) {
         Reservoir own[MAX_RESERVOIRS];
         loadReservoirs(pixel, own);

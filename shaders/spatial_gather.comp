@@ -21,7 +21,7 @@ STORE_RESERVOIRS(History, history, historyPaths)
 
 uint chosenBy(uint pixel, uint slot)
 {
-    uint i = slot * pixelCount() + pixel;
+    uint i = slotRow(pixel, slot);
     return FETCH(Neighbors, i >> 2u)[i & 3u];
 }
 
@@ -35,7 +35,7 @@ uint neighborOf(uint pixel, uint slot)
 // f of the pixel's sample in the domain of its neighbor.
 vec3 shiftedFrom(uint pixel, uint slot, uint c)
 {
-    return uintBitsToFloat(FETCH(Shifted, (slot * RESERVOIR_COUNT + c) * pixelCount() + pixel).xyz);
+    return uintBitsToFloat(FETCH(Shifted, shiftedRow(pixel, slot, c)).xyz);
 }
 
 // How often do the reservoirs of a pixel agree? What they share is shifted once.

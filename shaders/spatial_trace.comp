@@ -27,7 +27,7 @@ void main()
 
     Domain here = makeDomain(pixel, false);
     uint neighbor = here.seen ? chooseNeighbor(at, slot, here) : NO_NEIGHBOR;
-    neighbors[slot * pixelCount() + pixel] = neighbor;
+    neighbors[slotRow(pixel, slot)] = neighbor;
     if (neighbor == NO_NEIGHBOR) return;
 
     Reservoir own[MAX_RESERVOIRS];
@@ -35,6 +35,6 @@ void main()
     vec3 f[MAX_RESERVOIRS];
     shiftInto(makeDomain(neighbor, false), own, f);
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
-        shifted[(slot * RESERVOIR_COUNT + c) * pixelCount() + pixel] = vec4(f[c], 0.0);
+        shifted[shiftedRow(pixel, slot, c)] = vec4(f[c], 0.0);
     countShifts();
 }

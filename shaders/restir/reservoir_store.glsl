@@ -1,6 +1,7 @@
-// A set of reservoirs in two buffers, RESERVOIR_COUNT a pixel, plane by plane. The words of every reservoir: seed, leaf and
-// joint, S | f, carry; after them one word a pixel, the confidence, which all reservoirs of a pixel share (frames; 32 bits,
-// so that it never wraps). The paths of reconnecting shift maps: 3 rows a reservoir, left out when paths are replayed.
+// A set of reservoirs in two buffers, RESERVOIR_COUNT a pixel, and pixel by pixel, since neighbors are read one by one. The words
+// of every reservoir: seed, leaf and joint, S | f, carry; after them one word a pixel, the confidence, which all reservoirs
+// of a pixel share (frames; 32 bits, so that it never wraps). The paths of reconnecting shift maps: 3 rows a reservoir, left out
+// when paths are replayed. What spatial_trace hands to spatial_gather lies in the same order, slot by slot.
 #ifndef SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 #define SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 
@@ -12,8 +13,10 @@ const uint WORD_ROWS = 2u;
 const uint PATH_ROWS = 3u;
 
 uint pixelCount() { return frame.width * frame.height; }
-uint wordRow(uint pixel, uint c, uint row) { return (WORD_ROWS * c + row) * pixelCount() + pixel; }
-uint pathRow(uint pixel, uint c, uint row) { return (PATH_ROWS * c + row) * pixelCount() + pixel; }
+uint wordRow(uint pixel, uint c, uint row) { return (pixel * RESERVOIR_COUNT + c) * WORD_ROWS + row; }
+uint pathRow(uint pixel, uint c, uint row) { return (pixel * RESERVOIR_COUNT + c) * PATH_ROWS + row; }
+uint slotRow(uint pixel, uint slot) { return pixel * frame.neighborCount + slot; }
+uint shiftedRow(uint pixel, uint slot, uint c) { return slotRow(pixel, slot) * RESERVOIR_COUNT + c; }
 uint confidenceRow(uint pixel) { return WORD_ROWS * RESERVOIR_COUNT * pixelCount() + (pixel >> 2u); }
 
 #define ELEMENT(BUFFER, INDEX) BUFFER[INDEX]
