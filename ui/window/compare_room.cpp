@@ -88,7 +88,8 @@ void drawCompareRoom(WindowState& state)
     bool two = state.order.rival.has_value();
     if (ImGui::Checkbox("compare with B (C)", &two)) compare(state, two);
     remember(state.places, "compare");
-    explain("A second set of settings in the same scene. Both get the same time.");
+    explain("A second set of settings in the same scene. Both get the same time: the younger renders alone until it "
+            "has caught up.");
     if (state.order.rival) {
         ImGui::SameLine();
         int editing = state.editing;
