@@ -38,22 +38,24 @@ LAWS = {
 
 def tiles(count, side, emissive):
     """glTF of `count` tiles on a square of 10 x 10: waves, or rows of small emitters, with a floor, under a sun or not."""
-    points, indices = [], []
+    points, normals, indices = [], [], []
     for j in range(side + 1):
         for i in range(side + 1):
             x, z = i / side, j / side
             points += [x, 0.1 * math.sin(9 * x) * math.cos(7 * z), z]
+            slope = -0.9 * math.cos(9 * x) * math.cos(7 * z), 0.7 * math.sin(9 * x) * math.sin(7 * z)
+            length = math.hypot(*slope, 1)
+            normals += [slope[0] / length, 1 / length, slope[1] / length]
     for j in range(side):
         for i in range(side):
             a = j * (side + 1) + i
             indices += [a, a + side + 1, a + 1, a + 1, a + side + 1, a + side + 2]
     floor = [-20, -0.5, -20, 20, -0.5, -20, -20, -0.5, 20, 20, -0.5, 20]
-    data = struct.pack(f"<{len(points)}f", *points) + struct.pack(f"<{len(indices)}I", *indices)
-    views = [{"buffer": 0, "byteOffset": 0, "byteLength": 4 * len(points)},
-             {"buffer": 0, "byteOffset": 4 * len(points), "byteLength": 4 * len(indices)}]
-    start = len(data)
-    data += struct.pack("<12f", *floor) + struct.pack("<6I", 0, 2, 1, 1, 2, 3)
-    views += [{"buffer": 0, "byteOffset": start, "byteLength": 48}, {"buffer": 0, "byteOffset": start + 48, "byteLength": 24}]
+    data, views = b"", []
+    for packed in (struct.pack(f"<{len(points)}f", *points), struct.pack(f"<{len(indices)}I", *indices), struct.pack("<12f", *floor),
+                   struct.pack("<6I", 0, 2, 1, 1, 2, 3), struct.pack(f"<{len(normals)}f", *normals)):
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
+        data += packed
     across = math.ceil(math.sqrt(count))
     scale = 10 / across
     nodes = [{"mesh": 0, "translation": [-5 + scale * (k % across), 2.0 if emissive else 0, -5 + scale * (k // across)],
@@ -73,8 +75,9 @@ def tiles(count, side, emissive):
              "min": [0, -0.1, 0], "max": [1, 0.1, 1]},
             {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": len(indices)},
             {"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 4, "min": [-20, -0.5, -20], "max": [20, -0.5, 20]},
-            {"bufferView": 3, "componentType": 5125, "type": "SCALAR", "count": 6}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": int(emissive)}]},
+            {"bufferView": 3, "componentType": 5125, "type": "SCALAR", "count": 6},
+            {"bufferView": 4, "componentType": 5126, "type": "VEC3", "count": len(normals) // 3}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 4}, "indices": 1, "material": int(emissive)}]},
                    {"primitives": [{"attributes": {"POSITION": 2}, "indices": 3, "material": 0}]}]}
     if not emissive:
         nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}}, "rotation": [-0.5, 0.2, 0, 0.84]})

@@ -67,9 +67,10 @@ std::string ErrorMeter::complaint() const
 bool ErrorMeter::due(Side side) const
 {
     const ShotPointer& shot = offered_.sides[side];
-    if (!shot || !offered_.reference || shot->order.moving || shot == tracks_[side].tried) return false;
-    const ErrorCurve& curve = tracks_[side].curve;
-    return curve.empty() || shot->seconds >= APART * curve.back().seconds;
+    const Track& track = tracks_[side];
+    if (!shot || !offered_.reference || shot->order.moving) return false;
+    if (offered_.reference != track.judge) return true; // one that converges has got better
+    return shot != track.tried && (track.curve.empty() || shot->seconds >= APART * track.curve.back().seconds);
 }
 
 void ErrorMeter::run()
@@ -99,9 +100,13 @@ void ErrorMeter::measure(std::unique_lock<std::mutex>& lock, Side side)
     lock.lock();
     complaint_ = complaint;
     Track& track = tracks_[side];
-    if (track.run == shot->run && sameReference(track.reference, reference) && complaint.empty())
-        track.curve.push_back(point);
+    if (track.run == shot->run && sameReference(track.reference, reference) && complaint.empty()) {
+        ErrorCurve& curve = track.curve;
+        if (!curve.empty() && point.seconds < APART * curve.back().seconds) curve.pop_back(); // judged better now
+        curve.push_back(point);
+    }
     track.tried = shot;
+    track.judge = reference;
     lock.unlock();
     wake_();
     lock.lock();

@@ -30,7 +30,8 @@ class ErrorMeter
     ErrorMeter& operator=(const ErrorMeter&) = delete;
 
     // Every new reference and every new film starts a new curve; a reference that converges goes on being the same.
-    // Points are a few percent of their time apart; pictures of a moving camera are not measured.
+    // Points are a few percent of their time apart, and the last is measured again whenever the reference has got
+    // better; pictures of a moving camera are not measured.
     void offer(const Pictures& pictures);
     ErrorCurve curve(Side side) const;
     std::string complaint() const; // why nothing can be measured; empty: nothing is wrong
@@ -44,7 +45,8 @@ class ErrorMeter
         ErrorCurve curve;
         uint64_t run = 0; // of the film
         ReferencePointer reference;
-        ShotPointer tried; // measured last, or found not to be measurable
+        ShotPointer tried;      // measured last, or found not to be measurable
+        ReferencePointer judge; // and against what
     };
     std::function<void()> wake_;
     mutable std::mutex mutex_; // of all up to thread_
