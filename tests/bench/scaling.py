@@ -23,6 +23,7 @@ import sys
 COLUMNS = ["series", "method", "x", "ms", "rays", "device_bytes", "peak_bytes", "bvh_seconds"]
 BASE = {"size": "160x90", "max-bounces": 3, "spatial": 3, "shift": "hybrid", "max-confidence": 20}
 METHODS = ["pt", "restir-pt", "rgb-restir"]
+COLORS = {"pt": "#808080", "restir-pt": "#1f77b4", "rgb-restir": "#d62728", "all": "#2ca02c"}
 CHANNELS = {"restir-pt": 1, "grouped-restir": 2, "rgb-restir": 3}
 # Of what the time should be a power: the law that each series should follow, and over which part it is fitted.
 LAWS = {
@@ -171,12 +172,12 @@ def report(rows, folder):
             print(f"| {method} | {cells} | {exponent(pairs):.2f} | {memory} |")
             (folder / f"{series}-{method}.dat").write_text("".join(f"{x} {ms}\n" for x, ms in pairs))
         logarithmic = series not in ("neighbors", "channels")
-        curves = ", ".join(f"'{series}-{method}.dat' with linespoints pt 7 ps 0.4 lc {1 + list(methods).index(method)} "
-                           f"title '{method}'" for method in methods)
-        plots.append(("set logscale xy" if logarithmic else "unset logscale; set yrange [0:*]") +
-                     f"\nset title '{series}'\nplot {curves}\nunset yrange; set autoscale\n")
+        curves = ", ".join(f"'{series}-{method}.dat' with linespoints pt 7 ps 0.4 lc rgb '{COLORS[method]}' title '{method}'"
+                           for method in methods)
+        axes = "set logscale xy; set format x '10^{%L}'" if logarithmic else "unset logscale; set format x '%g'; set yrange [0:*]"
+        plots.append(f"{axes}\nset title '{series}'\nplot {curves}\nunset yrange; set autoscale\n")
     script = "set terminal svg size 1100,620 font 'sans,11'\nset output 'scaling.svg'\nset ylabel 'ms'\n" \
-             "set key top left\nset grid\nset multiplot layout 2,4\n" + "".join(plots)
+             "set key bottom right\nset grid\nset multiplot layout 2,4\n" + "".join(plots)
     subprocess.run(["gnuplot"], input=script.encode(), cwd=folder, check=True)
 
 
