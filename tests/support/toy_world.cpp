@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -97,10 +97,11 @@ std::vector<std::byte> domainBytes(bool moves)
         for (uint32_t y = 0; y < SIZE; ++y)
             for (uint32_t x = 0; x < SIZE; ++x) domains.push_back(domainAt(x, y, frame, moves));
     const uint32_t header[4] = {PERIOD};
-    std::vector<std::byte> bytes(sizeof(CELLS) + sizeof(header) + domains.size() * sizeof(ToyDomain));
-    std::memcpy(bytes.data(), CELLS, sizeof(CELLS));
-    std::memcpy(bytes.data() + sizeof(CELLS), header, sizeof(header));
-    std::memcpy(bytes.data() + sizeof(CELLS) + sizeof(header), domains.data(), domains.size() * sizeof(ToyDomain));
+    std::vector<std::byte> bytes;
+    const auto append = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+    append(std::as_bytes(std::span(CELLS)));
+    append(std::as_bytes(std::span(header)));
+    append(std::as_bytes(std::span(domains)));
     return bytes;
 }
 
