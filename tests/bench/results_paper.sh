@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# PSNR and SSIM as in the paper (not yet in RESULTS.md): tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
+# The table "PSNR and SSIM" of RESULTS.md: tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
 # Temporal reuse alone, random replay, resting camera, after FRAMES frames of history (SIZE, FRAMES, RUNS, REFERENCE_FRAMES
 # shorten or lengthen it; SPONZA names that scene's file).
 set -euo pipefail
