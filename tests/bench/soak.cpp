@@ -108,7 +108,8 @@ int soak(double minutes, const std::string& deviceName)
 {
     gpu::Device device = gpu::Device::create({.adapter = deviceName});
     fmt::print("On {}, for {} minutes\n", device.adapter().name, minutes);
-    fmt::print("turn minutes   frames  resident-MiB  heap-MiB  files threads buffers pages layouts parked unfinite\n");
+    fmt::print("turn minutes   frames  resident-MiB  heap-MiB  files threads buffers pages layouts parked unfinite "
+               "device-MiB\n");
     const auto start = std::chrono::steady_clock::now();
     const auto minutesPast = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 60;
@@ -123,10 +124,10 @@ int soak(double minutes, const std::string& deviceName)
         if (pictures.empty()) pictures = now;
         for (size_t i = 0; i < now.size(); ++i) different += now[i] != pictures[i];
         const Usage u = turns.emplace_back(usageOf(device));
-        fmt::print("{:4} {:7.2f} {:8} {:13.2f} {:9.2f} {:6} {:7} {:7} {:5} {:7} {:6} {:8}\n", turns.size(),
+        fmt::print("{:4} {:7.2f} {:8} {:13.2f} {:9.2f} {:6} {:7} {:7} {:5} {:7} {:6} {:8} {:9.3f}\n", turns.size(),
                    minutesPast(), turns.size() * std::size(PIECES) * FRAMES, u.residentBytes / (1 << 20),
                    u.heapBytes / (1 << 20), u.files, u.threads, u.commandBuffers, u.queryPages, u.layouts, u.parked,
-                   unfinite);
+                   unfinite, double(u.deviceBytes) / (1 << 20));
         std::fflush(stdout);
     }
 
@@ -135,7 +136,7 @@ int soak(double minutes, const std::string& deviceName)
     const double heapGrowth = 100 * (late.heapBytes / early.heapBytes - 1);
     const bool handles = early.files == late.files && early.threads == late.threads &&
                          early.commandBuffers == late.commandBuffers && early.queryPages == late.queryPages &&
-                         early.layouts == late.layouts && late.parked == 0 && late.deviceBytes == 0;
+                         early.layouts == late.layouts && late.parked == 0 && early.deviceBytes == late.deviceBytes;
     fmt::print(
         "resident memory grew by {:.2f}%, the heap by {:.2f}%, handles {}, {} pictures differ, {} values are not "
         "finite\n",
