@@ -68,8 +68,8 @@ PixelBytes pixelBytes(const Settings& settings)
     return bytes;
 }
 
-// Neighbors see alike light as far as the picture's detail allows, so by default the radius follows its height: 20
-// pixels in 720 lines. Measured in cornell with 72 lines: 2 pixels have a quarter of the relative MSE of 20 (LOG.md).
+// Neighbors see alike light as far as the picture's detail allows, so by default the radius follows its height: an
+// 18th, measured with 72 lines (tests/bench/LOG.md).
 float neighborRadius(const Settings& settings)
 {
     return settings.spatialRadius > 0 ? settings.spatialRadius : std::max(2.0f, float(settings.height) / 18);

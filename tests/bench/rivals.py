@@ -5,9 +5,9 @@
 
 Cycles (Debian's blender, CPU), interleaved in one run on the same cores: both trace two Lambertian scenes of 5 scattering events at
 512x512; microseconds per sample and pixel are the time of many samples less that of few, so that start-up does not count. The means of
-both pictures are printed beside. Then frames (the time of
-their stages) of ReSTIR at 128x128 with a resting camera, as Tauray was once measured on the same kind
-of machine (it needs ray-query hardware or a driver that imitates it; its figures are constants here). Wants a quiet machine.
+both pictures are printed beside. Then frames (the time of their stages) of ReSTIR at 128x128 with a resting camera, as Tauray was once
+measured on the same kind of machine (it needs ray-query hardware or a driver that imitates it; its figures are constants here). Wants
+a quiet machine, Debian's blender and python3-numpy.
 """
 
 import argparse
@@ -16,9 +16,10 @@ import math
 import os
 import pathlib
 import statistics
-import struct
 import subprocess
 import sys
+
+import gltf
 
 BOUNCES = 5
 # Milliseconds of a frame of Tauray on two such cores, lavapipe 25.0.7, 128x128, scenes of like size: settings of render, and its time.
@@ -110,31 +111,18 @@ def hall():
 
 
 def write(name, meshes, camera, folder):
-    data, views, accessors, primitives = b"", [], [], []
-    for mesh in meshes:
-        for packed, accessor in (
-                (struct.pack(f"<{3 * len(mesh.points)}f", *(x for p in mesh.points for x in p)),
-                 {"componentType": 5126, "type": "VEC3", "count": len(mesh.points),
-                  "min": [min(axis) for axis in zip(*mesh.points)], "max": [max(axis) for axis in zip(*mesh.points)]}),
-                (struct.pack(f"<{len(mesh.indices)}I", *mesh.indices),
-                 {"componentType": 5125, "type": "SCALAR", "count": len(mesh.indices)})):
-            accessors.append({"bufferView": len(views), **accessor})
-            views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
-            data += packed
-        primitives.append({"attributes": {"POSITION": len(accessors) - 2}, "indices": len(accessors) - 1,
-                           "material": len(primitives)})
-    (folder / f"{name}.bin").write_bytes(data)
-    gltf = {
+    """Its file and number of triangles."""
+    primitives = [{"attributes": {"POSITION": 2 * i}, "indices": 2 * i + 1, "material": i} for i in range(len(meshes))]
+    scene = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
         "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.01, "aspectRatio": 1}}],
         "nodes": [{"mesh": 0}, {"camera": 0, **camera}], "materials": [mesh.material for mesh in meshes],
-        "meshes": [{"primitives": primitives}], "accessors": accessors, "bufferViews": views,
-        "buffers": [{"byteLength": len(data), "uri": f"{name}.bin"}]}
+        "meshes": [{"primitives": primitives}],
+        **gltf.packed([array for mesh in meshes for array in (mesh.points, mesh.indices)])}
     file = folder / f"{name}.gltf"
-    file.write_text(json.dumps(gltf))
-    triangles = sum(len(mesh.indices) // 3 for mesh in meshes)
-    return file, triangles
+    file.write_text(json.dumps(scene))
+    return file, sum(len(mesh.indices) // 3 for mesh in meshes)
 
 
 def trichrome(program, file, method, size, frames, folder, more=()):
@@ -167,13 +155,13 @@ def besideCycles(arguments, scenes):
     for name, (file, triangles) in scenes.items():
         ours, theirs = [], []
         for _ in range(arguments.rounds):
-            short, long_of_ours = (trichrome(arguments.program, file, "pt", size, n, arguments.folder, ["--pixel-filter", "box"])
+            first, last = (trichrome(arguments.program, file, "pt", size, n, arguments.folder, ["--pixel-filter", "box"])
                            for n in (few, many))
-            ours.append(1e6 * (long_of_ours["wall_seconds"] - short["wall_seconds"]) / (many - few) / size**2)
-            (short, _), (long, mean_of_cycles) = cycles(arguments.blender, file, size, [few, many], arguments.folder)
+            ours.append(1e6 * (last["wall_seconds"] - first["wall_seconds"]) / (many - few) / size**2)
+            (short, _), (long, mean) = cycles(arguments.blender, file, size, [few, many], arguments.folder)
             theirs.append(1e6 * (long - short) / (many - few) / size**2)
         ratio = statistics.median(t / o for t, o in zip(theirs, ours))
-        means = ", ".join(f"{a / b:.4f}" for a, b in zip(long_of_ours["mean_rgb"], mean_of_cycles))
+        means = ", ".join(f"{a / b:.4f}" for a, b in zip(last["mean_rgb"], mean))
         print(f"| {name} | {triangles} | {statistics.median(ours):.2f} | {statistics.median(theirs):.2f} | {ratio:.2f} | {means} |",
               flush=True)
 

@@ -9,16 +9,16 @@ median of --rounds. Wants a quiet machine. Scenes of many triangles and lights a
 """
 
 import argparse
-import base64
 import csv
 import json
 import math
 import os
 import pathlib
 import statistics
-import struct
 import subprocess
 import sys
+
+import gltf
 
 COLUMNS = ["series", "method", "x", "ms", "rays", "device_bytes", "peak_bytes", "bvh_seconds"]
 BASE = {"size": "160x90", "max-bounces": 3, "spatial": 3, "shift": "hybrid", "max-confidence": 20}
@@ -43,20 +43,15 @@ def tiles(count, side, emissive):
     for j in range(side + 1):
         for i in range(side + 1):
             x, z = i / side, j / side
-            points += [x, 0.1 * math.sin(9 * x) * math.cos(7 * z), z]
+            points.append([x, 0.1 * math.sin(9 * x) * math.cos(7 * z), z])
             slope = -0.9 * math.cos(9 * x) * math.cos(7 * z), 0.7 * math.sin(9 * x) * math.sin(7 * z)
             length = math.hypot(*slope, 1)
-            normals += [slope[0] / length, 1 / length, slope[1] / length]
+            normals.append([slope[0] / length, 1 / length, slope[1] / length])
     for j in range(side):
         for i in range(side):
             a = j * (side + 1) + i
             indices += [a, a + side + 1, a + 1, a + 1, a + side + 1, a + side + 2]
-    floor = [-20, -0.5, -20, 20, -0.5, -20, -20, -0.5, 20, 20, -0.5, 20]
-    data, views = b"", []
-    for packed in (struct.pack(f"<{len(points)}f", *points), struct.pack(f"<{len(indices)}I", *indices), struct.pack("<12f", *floor),
-                   struct.pack("<6I", 0, 2, 1, 1, 2, 3), struct.pack(f"<{len(normals)}f", *normals)):
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)})
-        data += packed
+    floor = [[-20, -0.5, -20], [20, -0.5, -20], [-20, -0.5, 20], [20, -0.5, 20]]
     across = math.ceil(math.sqrt(count))
     scale = 10 / across
     nodes = [{"mesh": 0, "translation": [-5 + scale * (k % across), 2.0 if emissive else 0, -5 + scale * (k // across)],
@@ -65,34 +60,26 @@ def tiles(count, side, emissive):
     materials = [{"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.8, 0.7, 0.5, 1]}, "doubleSided": True}]
     if emissive:
         materials.append({"emissiveFactor": [1, 0.8, 0.5], "doubleSided": True})
-    gltf = {
+    scene = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.01, "aspectRatio": 16 / 9}}],
         "materials": materials, "nodes": nodes,
-        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
-        "bufferViews": views,
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": len(points) // 3,
-             "min": [0, -0.1, 0], "max": [1, 0.1, 1]},
-            {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": len(indices)},
-            {"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 4, "min": [-20, -0.5, -20], "max": [20, -0.5, 20]},
-            {"bufferView": 3, "componentType": 5125, "type": "SCALAR", "count": 6},
-            {"bufferView": 4, "componentType": 5126, "type": "VEC3", "count": len(normals) // 3}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 4}, "indices": 1, "material": int(emissive)}]},
-                   {"primitives": [{"attributes": {"POSITION": 2}, "indices": 3, "material": 0}]}]}
+        **gltf.packed([points, normals, indices, floor, [0, 2, 1, 1, 2, 3]]),
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": int(emissive)}]},
+                   {"primitives": [{"attributes": {"POSITION": 3}, "indices": 4, "material": 0}]}]}
     if not emissive:
         nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}}, "rotation": [-0.5, 0.2, 0, 0.84]})
-        gltf["scenes"][0]["nodes"].append(len(nodes) - 1)
-        gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}}
-        gltf["extensionsUsed"] = ["KHR_lights_punctual"]
-    return gltf
+        scene["scenes"][0]["nodes"].append(len(nodes) - 1)
+        scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}}
+        scene["extensionsUsed"] = ["KHR_lights_punctual"]
+    return scene
 
 
 def pointsOf(series, folder):
     """Of a series: (x, scene, methods, settings)."""
-    def written(name, gltf):
+    def written(name, scene):
         file = folder / f"{name}.gltf"
-        file.write_text(json.dumps(gltf))
+        file.write_text(json.dumps(scene))
         return str(file)
 
     if series == "triangles":
