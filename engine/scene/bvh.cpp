@@ -12,6 +12,9 @@
 
 #include <embree3/rtcore.h>
 #include <embree3/rtcore_builder.h>
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
@@ -64,7 +67,48 @@ struct BuildContext {
     const BvhInput* input = nullptr;
     std::mutex mutex; // of progress: Embree's threads report
     double reported = 0;
+    char started = 0, ended = 0; // places that Callback and its build name to the thread sanitizer
 };
+
+// libtbb, built without the thread sanitizer, starts and joins Embree's threads; so every callback says that it comes
+// after the start of its build and before the end. Callbacks stay unordered among each other.
+class Callback
+{
+  public:
+    explicit Callback(void* context) : build_(*static_cast<BuildContext*>(context))
+    {
+#ifdef __SANITIZE_THREAD__
+        __tsan_acquire(&build_.started);
+#endif
+    }
+    ~Callback()
+    {
+#ifdef __SANITIZE_THREAD__
+        __tsan_release(&build_.ended);
+#endif
+    }
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
+    BuildContext& build() const
+    {
+        return build_;
+    }
+
+  private:
+    BuildContext& build_;
+};
+
+const void* run(RTCBuildArguments& arguments, [[maybe_unused]] BuildContext& context)
+{
+#ifdef __SANITIZE_THREAD__
+    __tsan_release(&context.started);
+    const void* root = rtcBuildBVH(&arguments);
+    __tsan_acquire(&context.ended);
+    return root;
+#else
+    return rtcBuildBVH(&arguments);
+#endif
+}
 
 RTCBounds boundsOf(const Box& box)
 {
@@ -75,8 +119,9 @@ RTCBounds boundsOf(const Box& box)
 void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned axisIndex, float position, RTCBounds* left,
                     RTCBounds* right, void* context)
 {
+    const Callback callback(context);
     const int axis = int(axisIndex);
-    const Corners v = cornersOf(*static_cast<BuildContext*>(context)->input, primitive->primID);
+    const Corners v = cornersOf(*callback.build().input, primitive->primID);
     std::array<Box, 2> parts;
     const auto extend = [&](int side, const glm::vec3& point) { parts[size_t(side)].extend({point, point}); };
     for (size_t i = 0; i < 3; ++i) {
@@ -103,7 +148,8 @@ void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned axisIndex, floa
 
 bool reportProgress(void* context, double fraction)
 {
-    auto& build = *static_cast<BuildContext*>(context);
+    const Callback callback(context);
+    BuildContext& build = callback.build();
     const std::lock_guard lock(build.mutex);
     if (fraction > build.reported) {
         build.reported = fraction;
@@ -164,22 +210,26 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive>
     arguments.primitives = primitives.data();
     arguments.primitiveCount = count;
     arguments.primitiveArrayCapacity = primitives.size();
-    arguments.createNode = [](RTCThreadLocalAllocator allocator, unsigned, void*) -> void* {
+    arguments.createNode = [](RTCThreadLocalAllocator allocator, unsigned, void* build) -> void* {
+        const Callback callback(build);
         return newNode(allocator);
     };
-    arguments.setNodeChildren = [](void* node, void** children, unsigned childCount, void*) {
+    arguments.setNodeChildren = [](void* node, void** children, unsigned childCount, void* build) {
+        const Callback callback(build);
         CHECK_EQ(childCount, 2u);
         for (size_t i = 0; i < 2; ++i)
             static_cast<BuildNode*>(node)->children[i] = static_cast<BuildNode*>(children[i]);
     };
-    arguments.setNodeBounds = [](void* node, const RTCBounds** bounds, unsigned, void*) {
+    arguments.setNodeBounds = [](void* node, const RTCBounds** bounds, unsigned, void* build) {
+        const Callback callback(build);
         for (size_t i = 0; i < 2; ++i)
             static_cast<BuildNode*>(node)->childBoxes[i] = {
                 {bounds[i]->lower_x, bounds[i]->lower_y, bounds[i]->lower_z},
                 {bounds[i]->upper_x, bounds[i]->upper_y, bounds[i]->upper_z}};
     };
     arguments.createLeaf = [](RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* leaf, size_t leafCount,
-                              void*) -> void* {
+                              void* build) -> void* {
+        const Callback callback(build);
         CHECK_EQ(leafCount, size_t{1});
         BuildNode* node = newNode(allocator);
         node->triangle = leaf->primID;
@@ -188,7 +238,7 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive>
     arguments.splitPrimitive = splitPrimitive;
     if (input.progress) arguments.buildProgress = reportProgress;
     arguments.userPtr = &context;
-    const void* root = rtcBuildBVH(&arguments);
+    const void* root = run(arguments, context);
     if (root == nullptr)
         throw Error("Embree cannot build a tree over {} triangles (error {}).", count,
                     int(rtcGetDeviceError(device.get())));
