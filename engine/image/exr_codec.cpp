@@ -11,11 +11,13 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include "engine/base/error.h"
+#include "engine/image/exr_attributes.h"
 
 namespace image
 {
@@ -24,8 +26,14 @@ namespace
 {
 
 constexpr int MAX_SIDE = 1 << 16;
-constexpr int MAX_TILE = 1 << 12; // per side; OpenEXR allocates whole rows of tiles
+constexpr int MAX_TILE = 1 << 12; // per side
 constexpr int ROWS_AT_ONCE = 256; // memory grows with what was decoded, not with what the header claims
+constexpr int64_t MAX_BLOCK_BYTES = int64_t{1} << 29; // OpenEXR holds a row of tiles or a block of scan lines whole
+
+// The most bytes of pixels in a byte of file. A picture of one value comes to 59049 by DWA and to 1204 by the others;
+// deflate alone cannot exceed 1032, and PXR24 drops one byte of four before it.
+constexpr int64_t MAX_RATIO_DWA = int64_t{1} << 16;
+constexpr int64_t MAX_RATIO = int64_t{1} << 11;
 
 // OpenEXR gives these names a type or a meaning of its own; ours get a prefix in the file.
 constexpr std::array RESERVED = {"name", "type", "version", "chunkCount", "view", "tiles", "maxSamplesPerPixel"};
@@ -83,7 +91,33 @@ Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int fir
     return {Imf::FLOAT, base, sizeof(glm::vec3), static_cast<size_t>(width) * sizeof(glm::vec3)};
 }
 
-Image readPixels(Imf::InputFile& file, bool gray)
+// Throws where the header claims more than a file of so many bytes can hold. To be asked before OpenEXR takes memory
+// for the pixels: it goes by the header alone.
+void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what)
+{
+    const Imath::Box2i window = header.dataWindow();
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+    const int64_t height = int64_t{window.max.y} - window.min.y + 1;
+    if (static_cast<uint64_t>(width * height) > MAX_PIXELS)
+        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
+
+    int64_t bytesPerPixel = 0; // over all channels, whether we read them or not
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        bytesPerPixel += channel.channel().type == Imf::HALF ? 2 : 4;
+    const Imf::Compression compression = header.compression();
+    const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+    const int64_t claimed = width * height * bytesPerPixel;
+    if (claimed > static_cast<int64_t>(bytes) * (dwa ? MAX_RATIO_DWA : MAX_RATIO))
+        throw Error("{} claims to be {} x {} pixels of {} bytes, too much for a file of {} bytes.", what, width, height,
+                    bytesPerPixel, bytes);
+
+    const int64_t rows = header.hasTileDescription() ? header.tileDescription().ySize : ROWS_AT_ONCE;
+    if (width * std::min(rows, height) * bytesPerPixel > MAX_BLOCK_BYTES)
+        throw Error("{} has blocks of {} x {} pixels of {} bytes, more than the limit of {} bytes.", what, width,
+                    std::min(rows, height), bytesPerPixel, MAX_BLOCK_BYTES);
+}
+
+Image readPixels(Imf::InputPart& file, bool gray)
 {
     const Imath::Box2i window = file.header().dataWindow();
     const auto width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
@@ -117,8 +151,8 @@ Metadata readMetadata(const Imf::Header& header)
     Metadata metadata;
     for (auto entry = header.begin(); entry != header.end(); ++entry) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
-        if (!text) continue;
         std::string key = entry.name();
+        if (!text || isReserved(key)) continue;
         if (key.starts_with(PREFIX) && isReserved(key.substr(PREFIX.size()))) key = key.substr(PREFIX.size());
         metadata.emplace_back(key, text->value());
     }
@@ -127,21 +161,19 @@ Metadata readMetadata(const Imf::Header& header)
 
 Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
 {
+    checkAttributes(bytes, what);
     MemoryInput input(bytes);
     Imf::Header::setMaxImageSize(MAX_SIDE, MAX_SIDE);
     Imf::Header::setMaxTileSize(MAX_TILE, MAX_TILE);
-    Imf::InputFile file(input, 0);
-    const Imf::ChannelList& channels = file.header().channels();
+    Imf::MultiPartInputFile parts(input, 0);
+    const Imf::Header& header = parts.header(0);
+    const Imf::ChannelList& channels = header.channels();
     const bool color = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
     if (!color && (!channels.findChannel("Y") || channels.findChannel("RY")))
         throw Error("{} has neither the channels R, G, B nor Y alone.", what);
-
-    const Imath::Box2i window = file.header().dataWindow();
-    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
-    const int64_t height = int64_t{window.max.y} - window.min.y + 1;
-    if (static_cast<uint64_t>(width * height) > MAX_PIXELS)
-        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
-    if (metadata) *metadata = readMetadata(file.header());
+    checkClaim(header, bytes.size(), what);
+    if (metadata) *metadata = readMetadata(header);
+    Imf::InputPart file(parts, 0);
     return readPixels(file, !color);
 }
 

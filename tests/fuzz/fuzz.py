@@ -30,7 +30,7 @@ def fuzz(fuzzer, target, seconds):
                 if file.stat().st_size <= MAX_BYTES:
                     (seeds / file.name).write_bytes(file.read_bytes())
     folders = [grown, seeds] + [kept for kept in [KEPT / target] if kept.is_dir()]
-    limits = ["-rss_limit_mb=2048", "-timeout=20", f"-max_len={MAX_BYTES}"]
+    limits = ["-rss_limit_mb=2048", "-malloc_limit_mb=600", "-timeout=20", f"-max_len={MAX_BYTES}"]
     limits += [f"-max_total_time={seconds}"] if seconds else ["-runs=1000", "-seed=1"]
     command = [fuzzer, *limits, "-print_final_stats=1", f"-artifact_prefix={found}/", *folders]
     environment = os.environ | {

@@ -88,6 +88,7 @@ std::vector<File> correlationBatch()
     const statistics::BatchValue value = {.value = 0.1, .without = {0.25, 1e300, 3}};
     return {ui::toBytes({.method = "pt",
                          .index = 7,
+                         .runs = 3,
                          .law = passes::FrameLaw{.variance = value, .plateau = value, .floor = {{1, 2, 3}}},
                          .points = {{.frame = 2, .pixels = 9, .autocovariance = value, .variance = value}}})};
 }

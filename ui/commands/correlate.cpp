@@ -93,7 +93,7 @@ class Correlator
     // The law of plain frames, as many as the longest law of a method has.
     CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
     {
-        CorrelationBatch result{.method = PATH_TRACER, .index = index};
+        CorrelationBatch result{.method = PATH_TRACER, .index = index, .runs = runs};
         passes::Renderer& renderer = rendererOf(PATH_TRACER, plain_, runs);
         result.law = law(renderer, plain_, index, frames, tick);
         result.nonFinite = nonFinite(renderer);
@@ -102,7 +102,7 @@ class Correlator
 
     CorrelationBatch measure(const NamedMethod& method, uint32_t index, uint32_t runs, const passes::Tick& tick)
     {
-        CorrelationBatch result{.method = method.name, .index = index};
+        CorrelationBatch result{.method = method.name, .index = index, .runs = runs};
         passes::Renderer& renderer = rendererOf(method.name, method.settings, runs);
         if (needsLaw(method)) {
             result.law = law(renderer, method.settings, index, lawFrames(method), tick);
@@ -185,21 +185,26 @@ std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& b
     return list;
 }
 
-// Runs of each batch: as equal as can be, at most --batch and what the device can bind. The same on all ranks, however
-// many there are.
+// Runs of each batch: --batch or what the device can bind, and what is left in the last. The same on all ranks, however
+// many there are; and with more --runs the full batches stay what they were.
 std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const
 {
     uint32_t most = batch;
     for (const NamedMethod& method : list)
         most = std::min(most, passes::Renderer::maxRuns(gpu.limits(), method.settings));
-    const uint32_t count = (runs + std::max(most, 1u) - 1) / std::max(most, 1u);
-    if (most < MIN_BATCH || runs / count < MIN_BATCH)
+    std::vector<uint32_t> sizes;
+    for (uint32_t left = most < MIN_BATCH ? 0 : runs; left > 0; left -= sizes.back())
+        sizes.push_back(std::min(left, most));
+    if (sizes.size() > 1 && sizes.back() < MIN_BATCH) { // the last two share
+        const uint32_t both = most + sizes.back();
+        sizes.end()[-2] = both - both / 2;
+        sizes.back() = both / 2;
+    }
+    if (sizes.empty() || sizes.back() < MIN_BATCH)
         throw Error(
             "{} runs of {}x{} pixels do not make batches of {} or more, of which the device \"{}\" can render {} "
             "at once; reduce --size.",
             runs, list.front().settings.width, list.front().settings.height, MIN_BATCH, gpu.adapter().name, most);
-    std::vector<uint32_t> sizes;
-    for (uint32_t i = 0; i < count; ++i) sizes.push_back(runs / count + (i < runs % count ? 1 : 0));
     return sizes;
 }
 
@@ -217,8 +222,6 @@ int CorrelateCommand::run() const
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
     for (const auto& fact : motion.toText()) facts.push_back(fact);
-    facts.emplace_back("runs", std::to_string(runs));
-    facts.emplace_back("batches", std::to_string(sizes.size()));
     for (const NamedMethod& method : list) facts.emplace_back("method " + method.name, passes::hash(method.settings));
     const scene::Scene world = openScene(scene, base, progress);
     const passes::CameraAt cameraAt = motion.read(world, base);
@@ -227,7 +230,9 @@ int CorrelateCommand::run() const
     if (processes.index() == 0) store.open(facts, resume);
     processes.barrier();
     if (processes.index() > 0) store.open(facts, true); // where directories are not shared, each has its own
-    std::vector<CorrelationBatch> batches = store.load();
+    facts.emplace_back("runs", std::to_string(runs));   // a batch is the same however many there are
+    facts.emplace_back("batches", std::to_string(sizes.size()));
+    std::vector<CorrelationBatch> batches = store.load(sizes);
 
     // What this process has to do: items in the order of batches, dealt out in turns.
     struct Item {
@@ -328,7 +333,8 @@ Action setUpCorrelate(CLI::App& app)
            "use a large GPU better; covariances are about the means of a batch.")
         ->option_text("3 to 1000 runs (16)")
         ->check(CLI::Range(MIN_BATCH, 1000u));
-    app.add_flag("--resume", command->resume, "Goes on with the batches that DIR holds, of the same settings.");
+    app.add_flag("--resume", command->resume,
+                 "Goes on with the batches that DIR holds, of the same settings; with more --runs, too.");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);
     command->motion.addTo(app);

@@ -36,10 +36,13 @@ Batches withLaw(const Batches& batches, const std::string& method)
 
 std::vector<glm::dvec3> meanOver(const Batches& batches, std::vector<glm::dvec3> passes::FrameLaw::*field)
 {
-    std::vector<glm::dvec3> mean = (*batches.front().law).*field;
-    for (size_t b = 1; b < batches.size(); ++b)
-        for (size_t p = 0; p < mean.size(); ++p) mean[p] += ((*batches[b].law).*field)[p];
-    for (glm::dvec3& value : mean) value /= double(batches.size());
+    std::vector<glm::dvec3> mean(((*batches.front().law).*field).size());
+    uint32_t runs = 0;
+    for (const CorrelationBatch& batch : batches) {
+        runs += batch.runs;
+        for (size_t p = 0; p < mean.size(); ++p) mean[p] += double(batch.runs) * ((*batch.law).*field)[p];
+    }
+    for (glm::dvec3& value : mean) value /= double(runs);
     return mean;
 }
 
@@ -63,7 +66,7 @@ CurvePoint pointAt(uint32_t frame, const Batches& batches, const std::string& me
             autocovariances.push_back(own.autocovariance);
             variances.push_back(own.variance);
             point.pixels += own.pixels;
-            point.runs += uint32_t(own.variance.without.size());
+            point.runs += batch.runs;
         }
     }
     if (point.runs > 0) point.pixels /= autocovariances.size();

@@ -17,6 +17,7 @@ namespace ui
 struct CorrelationBatch {
     std::string method; // NamedMethod::name; PATH_TRACER: the law of plain frames, without a chain
     uint32_t index = 0;
+    uint32_t runs = 0;
     std::optional<passes::FrameLaw> law;
     std::vector<passes::ChainPoint> points;
     uint64_t nonFinite = 0; // values found not finite and counted as 0

@@ -75,11 +75,8 @@ std::vector<glm::dvec3> pictureOf(const Json& json)
 
 Bytes toBytes(const CorrelationBatch& batch)
 {
-    Json json = {{"method", batch.method},
-                 {"index", batch.index},
-                 {"law", nullptr},
-                 {"points", Json::array()},
-                 {"nonfinite", batch.nonFinite}};
+    Json json = {{"method", batch.method}, {"index", batch.index},    {"runs", batch.runs},
+                 {"law", nullptr},         {"points", Json::array()}, {"nonfinite", batch.nonFinite}};
     if (batch.law)
         json["law"] = {{"variance", toJson(batch.law->variance)},
                        {"plateau", toJson(batch.law->plateau)},
@@ -101,8 +98,10 @@ CorrelationBatch fromBytes(const Bytes& bytes)
     try {
         const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
         const Json json = Json::from_cbor(data, data + bytes.size());
-        CorrelationBatch batch{
-            .method = json.at("method"), .index = json.at("index"), .nonFinite = json.at("nonfinite")};
+        CorrelationBatch batch{.method = json.at("method"),
+                               .index = json.at("index"),
+                               .runs = json.at("runs"),
+                               .nonFinite = json.at("nonfinite")};
         if (const Json& law = json.at("law"); !law.is_null())
             batch.law = {.variance = valueOf(law.at("variance")),
                          .plateau = valueOf(law.at("plateau")),
@@ -148,16 +147,19 @@ void CorrelationStore::save(const CorrelationBatch& batch) const
 {
     std::string name; // of a file: methods may hold what directories do not like
     for (const char c : batch.method) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
-    files::writeAtomically(path_ / fmt::format("{:05}-{}{}", batch.index, name, EXTENSION), toBytes(batch));
+    files::writeAtomically(path_ / fmt::format("{:05}-{}-runs-{}{}", batch.index, batch.runs, name, EXTENSION),
+                           toBytes(batch));
 }
 
-std::vector<CorrelationBatch> CorrelationStore::load() const
+std::vector<CorrelationBatch> CorrelationStore::load(std::span<const uint32_t> runs) const
 {
     std::vector<CorrelationBatch> batches;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {
         if (entry.path().extension() != EXTENSION) continue;
         whileDoing(fmt::format("reading \"{}\"", entry.path().string()),
                    [&] { batches.push_back(fromBytes(files::read(entry.path()))); });
+        const CorrelationBatch& last = batches.back();
+        if (last.index >= runs.size() || last.runs != runs[last.index]) batches.pop_back(); // of other --runs
     }
     return batches;
 }

@@ -2,6 +2,7 @@
 // Finished batches on disk and between processes, so that nothing is measured twice. One file a batch, whole or absent.
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,8 @@ class CorrelationStore
     void open(const std::vector<std::pair<std::string, std::string>>& facts, bool resume) const;
 
     void save(const CorrelationBatch& batch) const;
-    std::vector<CorrelationBatch> load() const; // in no particular order
+    // Those that belong to a measurement of batches of `runs` [index], in no particular order.
+    std::vector<CorrelationBatch> load(std::span<const uint32_t> runs) const;
 
   private:
     std::filesystem::path path_;

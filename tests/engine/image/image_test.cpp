@@ -5,6 +5,10 @@
 #include <fstream>
 #include <limits>
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
@@ -128,6 +132,61 @@ TEST_F(ImageFile, MalformedFilesAreErrors)
     EXPECT_NE(messageOf(save("b.hdr", header + "-Y 60000 +X 60000\n1234")).find("60000 x 60000"), std::string::npos);
     EXPECT_EQ(messageOf(save("c.txt", "hello")),
               "Picture \"" + (folder / "c.txt").string() + "\" (5 bytes) is neither EXR, HDR, PNG nor JPEG.");
+}
+
+// Decoding takes memory by the header alone, so a header that no such file can keep is refused before.
+TEST_F(ImageFile, AnExrThatClaimsMoreThanItCanHoldIsRefused)
+{
+    image::write(folder / "ok.exr", sample(64, 64), {});
+    const std::vector<std::byte> bytes = files::read(folder / "ok.exr");
+    const std::string good(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+
+    std::string longer = good; // an attribute: 395 bytes made OpenEXR take 2 GB
+    longer.replace(longer.find("lineOrder") + 9 + 1 + 9 + 1, 4, "\xff\xff\xff\x7f");
+    EXPECT_EQ(messageOf(save("longer.exr", longer)),
+              "Picture \"" + (folder / "longer.exr").string() + "\" is cut short, or claims to be longer than it is.");
+
+    std::string wrong = good; // of fixed size: OpenEXR would read on inside the next attribute
+    wrong.replace(wrong.find("screenWindowWidth") + 17 + 1 + 5 + 1, 1, "\x03");
+    EXPECT_EQ(messageOf(save("wrong.exr", wrong)),
+              "Picture \"" + (folder / "wrong.exr").string() +
+                  "\", attribute screenWindowWidth, has 3 bytes, which none of the type float has.");
+
+    std::string claims = good;
+    const size_t right = claims.find("dataWindow") + 10 + 1 + 6 + 1 + 4 + 8;
+    claims.replace(right, 8, std::string("\xff\x7f\0\0\xff\x0f\0\0", 8));
+    EXPECT_EQ(messageOf(save("claims.exr", claims)),
+              "Picture \"" + (folder / "claims.exr").string() +
+                  "\" claims to be 32768 x 4096 pixels of 12 bytes, too much for "
+                  "a file of " +
+                  std::to_string(bytes.size()) + " bytes.");
+}
+
+// The other end of that limit: nothing gets smaller than a picture of one value in tiles as large as it.
+TEST_F(ImageFile, ReadsAnExrOfOneValueHoweverSmallItsFile)
+{
+    constexpr int SIDE = 2048;
+    const std::vector<float> even(size_t{SIDE} * SIDE, 0.5f);
+    for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION,
+                                               Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION}) {
+        Imf::Header header(SIDE, SIDE);
+        header.compression() = compression;
+        header.setTileDescription(Imf::TileDescription(SIDE, SIDE));
+        Imf::FrameBuffer buffer;
+        for (const char* name : {"R", "G", "B"}) {
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            auto* pixels = reinterpret_cast<char*>(const_cast<float*>(even.data())); // only read
+            buffer.insert(name, Imf::Slice(Imf::FLOAT, pixels, sizeof(float), SIDE * sizeof(float)));
+        }
+        {
+            Imf::TiledOutputFile file((folder / "even.exr").c_str(), header, 0);
+            file.setFrameBuffer(buffer);
+            file.writeTile(0, 0);
+        }
+        const image::Image back = image::read(folder / "even.exr").image;
+        ASSERT_EQ(back.pixels.size(), even.size()) << compression;
+        EXPECT_NEAR(back.pixels.back().y, 0.5, 1e-3) << compression;
+    }
 }
 
 TEST_F(ImageFile, FlippedBytesOfAnExrNeverCrash)

@@ -19,10 +19,11 @@ using Row = std::map<std::string, std::string>;
 class Correlate : public Trichrome
 {
   protected:
-    static std::vector<std::string> small(const std::string& output, const std::vector<std::string>& more = {})
+    static std::vector<std::string> small(const std::string& output, const std::vector<std::string>& more = {},
+                                          const char* runs = "8")
     {
         std::vector<std::string> words = {"correlate",     "cornell", "-o",     output, "--size",           "8x6",
-                                          "--max-bounces", "2",       "--runs", "8",    "--max-confidence", "16"};
+                                          "--max-bounces", "2",       "--runs", runs,   "--max-confidence", "16"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -93,9 +94,26 @@ TEST_F(Correlate, LeavesAPageThatStandsAloneAndFiguresThatFollowTheLaw)
                   "seed = \"0\", not \"7\"");
 
     // A batch that a kill left out is measured again, to the same bits.
-    std::filesystem::remove(out + "/batches/00001-rgb-restir.cbor");
+    std::filesystem::remove(out + "/batches/00001-4-runs-rgb-restir.cbor");
     EXPECT_EQ(run(small(out, {"--frames", "8", "--batch", "4", "--resume"})).exitCode, 0);
     EXPECT_EQ(readFile(out + "/correlate.csv"), before);
+}
+
+TEST_F(Correlate, MoreRunsGoOnWithTheBatchesThatAreThere)
+{
+    const std::string grown = directory / "grown", whole = directory / "whole";
+    const auto with = [](const std::string& out, const char* runs) {
+        return small(out, {"--frames", "4", "--batch", "4", "--resume"}, runs);
+    };
+    EXPECT_EQ(run(with(grown, "6")).exitCode, 0); // 3 and 3: two are no batch
+    EXPECT_EQ(run(with(grown, "8")).exitCode, 0);
+    const std::filesystem::path batch = grown + "/batches/00001-4-runs-rgb-restir.cbor";
+    const auto made = std::filesystem::last_write_time(batch);
+    EXPECT_EQ(run(with(grown, "11")).exitCode, 0);
+    EXPECT_EQ(run(with(whole, "11")).exitCode, 0);
+    EXPECT_EQ(readFile(grown + "/correlate.csv"), readFile(whole + "/correlate.csv"));
+    EXPECT_EQ(rows(grown).front()["runs"], "11");
+    EXPECT_EQ(std::filesystem::last_write_time(batch), made);
 }
 
 TEST_F(Correlate, CtrlCLeavesAPartialReportThatCanBeResumed)

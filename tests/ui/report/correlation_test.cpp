@@ -38,9 +38,9 @@ std::vector<NamedMethod> methods(uint32_t maxConfidence)
 // sigma^2 = 8, V = 10, P = 0.1: what a measurement to M = 4 without any error would give.
 std::vector<CorrelationBatch> exact(uint32_t index)
 {
-    CorrelationBatch plain{.method = PATH_TRACER, .index = index, .law = law(8, 0)};
-    CorrelationBatch one{.method = "restir-pt", .index = index, .law = law(10, 0.1)};
-    CorrelationBatch each{.method = "rgb-restir", .index = index};
+    CorrelationBatch plain{.method = PATH_TRACER, .index = index, .runs = 3, .law = law(8, 0)};
+    CorrelationBatch one{.method = "restir-pt", .index = index, .runs = 3, .law = law(10, 0.1)};
+    CorrelationBatch each{.method = "rgb-restir", .index = index, .runs = 3};
     for (const uint32_t frame : {2u, 4u}) {
         one.points.push_back({frame, 2, about(10.0 / frame + (1 - 2.0 / frame) * 0.1), about(6)});
         each.points.push_back({frame, 2, about(8.0 / frame), about(5)});
