@@ -121,7 +121,7 @@ TEST_F(ImageFile, MalformedFilesAreErrors)
         EXPECT_NE(messageOf(save("cut.exr", exr.substr(0, length))), "no error") << length;
 
     std::string huge = exr; // the data window's right and lower ends
-    const size_t window = huge.find("dataWindow") + 10 + 1 + 6 + 1 + 4;
+    const size_t window = huge.find("dataWindow") + 10 + 1 + 5 + 1 + 4;
     for (size_t i = 8; i < 16; ++i) huge[window + i] = i % 4 == 3 ? '\x7f' : '\xff';
     EXPECT_NE(messageOf(save("huge.exr", huge)), "no error");
 
@@ -153,7 +153,7 @@ TEST_F(ImageFile, AnExrThatClaimsMoreThanItCanHoldIsRefused)
                   "\", attribute screenWindowWidth, has 3 bytes, which none of the type float has.");
 
     std::string claims = good;
-    const size_t right = claims.find("dataWindow") + 10 + 1 + 6 + 1 + 4 + 8;
+    const size_t right = claims.find("dataWindow") + 10 + 1 + 5 + 1 + 4 + 8;
     claims.replace(right, 8, std::string("\xff\x7f\0\0\xff\x0f\0\0", 8));
     EXPECT_EQ(messageOf(save("claims.exr", claims)),
               "Picture \"" + (folder / "claims.exr").string() +
