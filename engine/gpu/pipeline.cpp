@@ -231,6 +231,7 @@ BindGroup Device::createBindGroup(const BindGroupDescriptor& descriptor)
     std::vector<VkDescriptorPoolSize> sizes;
     for (const Binding& binding : declared) sizes.push_back({state_->descriptorType(binding.kind), 1});
     const VkDescriptorPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                                 .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
                                                  .maxSets = 1,
                                                  .poolSizeCount = uint32_t(sizes.size()),
                                                  .pPoolSizes = sizes.data()};
@@ -286,7 +287,10 @@ BindGroupState::BindGroupState(DeviceState& owner) : device(&owner)
 
 BindGroupState::~BindGroupState()
 {
-    device->park([vk = device->device, pool = pool] { vkDestroyDescriptorPool(vk, pool, nullptr); });
+    device->park([vk = device->device, pool = pool, set = descriptors] {
+        if (set) vkFreeDescriptorSets(vk, pool, 1, &set); // lavapipe 22.3 keeps the names of sets that go with their pool
+        vkDestroyDescriptorPool(vk, pool, nullptr);
+    });
     --device->liveObjects;
 }
 

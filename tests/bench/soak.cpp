@@ -60,6 +60,8 @@ size_t entriesOf(const char* folder)
 
 Usage usageOf(gpu::Device& device)
 {
+    // Mesa takes pipelines apart at the next submission (lavapipe's queue), 40 MB of them.
+    device.queue().wait(device.queue().submit(device.createCommandEncoder("nothing")));
     malloc_trim(0);
     std::ifstream statm("/proc/self/statm");
     double size = 0, resident = 0;

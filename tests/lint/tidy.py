@@ -26,12 +26,11 @@ def main():
     build = sys.argv[1]
     commands = json.loads(pathlib.Path(build, "compile_commands.json").read_text(encoding="utf-8"))
     files = sys.argv[2:] or sorted({c["file"] for c in commands if c["file"].endswith(".cpp")})
+    failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = list(pool.map(lambda file: check(build, file), files))
-    for _, output in results:
-        if output.strip():
-            print(output.strip())
-    failed = sum(not well for well, _ in results)
+        for file, (well, output) in zip(files, pool.map(lambda file: check(build, file), files)):
+            failed += not well
+            print(output.strip() or f"{file}: {'clean' if well else 'FAILED'}", flush=True)
     print(f"{len(files)} files, {failed} with findings")
     sys.exit(1 if failed else 0)
 
