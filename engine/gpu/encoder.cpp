@@ -155,7 +155,10 @@ void EncoderState::dispatchInBands(const PipelineState& pipeline, const Dispatch
             begin();
         }
         std::string& work = names.back(); // a fresh command buffer has the encoder's name
-        work = milliseconds_ == 0 ? name : work.ends_with(name) ? work : work + ", " + name;
+        if (milliseconds_ == 0)
+            work = name;
+        else if (!work.ends_with(name))
+            work.append(", ").append(name);
         milliseconds_ += expected;
 
         if (device->beginLabel) {

@@ -86,8 +86,8 @@ Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int fir
 {
     const int64_t width = int64_t{window.max.x} - window.min.x + 1;
     const int64_t origin = firstRow * width + window.min.x;
-    auto* base = reinterpret_cast<char*>(pixels) + c * static_cast<int>(sizeof(float)) -
-                 origin * static_cast<int64_t>(sizeof(glm::vec3));
+    auto* base = reinterpret_cast<char*>(pixels) + static_cast<int64_t>(sizeof(float)) * c -
+                 static_cast<int64_t>(sizeof(glm::vec3)) * origin;
     return {Imf::FLOAT, base, sizeof(glm::vec3), static_cast<size_t>(width) * sizeof(glm::vec3)};
 }
 
@@ -95,7 +95,7 @@ Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int fir
 // for the pixels: it goes by the header alone.
 void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what)
 {
-    const Imath::Box2i window = header.dataWindow();
+    const Imath::Box2i& window = header.dataWindow();
     const int64_t width = int64_t{window.max.x} - window.min.x + 1;
     const int64_t height = int64_t{window.max.y} - window.min.y + 1;
     if (static_cast<uint64_t>(width * height) > MAX_PIXELS)
@@ -119,7 +119,7 @@ void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what
 
 Image readPixels(Imf::InputPart& file, bool gray)
 {
-    const Imath::Box2i window = file.header().dataWindow();
+    const Imath::Box2i& window = file.header().dataWindow();
     const auto width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
     Image image{width, 0, {}};
     for (int y = window.min.y; y <= window.max.y; y += ROWS_AT_ONCE) {

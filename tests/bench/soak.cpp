@@ -2,10 +2,12 @@
 // be left, no value be without a number, and every turn must make the same pixels to the bit. ./run soak MINUTES.
 
 #include <malloc.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -151,6 +153,13 @@ int soak(double minutes, const std::string& deviceName)
 
 int main(int argc, char** argv)
 {
+    // glibc keeps freed memory by thread, in pages that hold little, and more of them with time. What is counted here
+    // is what is in use. GLIBC_TUNABLES= measures as usual.
+    constexpr const char* TUNABLES = "GLIBC_TUNABLES";
+    if (!std::getenv(TUNABLES)) {
+        setenv(TUNABLES, "glibc.malloc.tcache_count=0:glibc.malloc.arena_max=1", 1);
+        execv("/proc/self/exe", argv);
+    }
     CLI::App app("Renders in turns and watches memory, handles and pixels; exit code 1 when one of them moves.");
     double minutes = 15;
     std::string device;

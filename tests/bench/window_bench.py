@@ -166,10 +166,13 @@ def toggle(arguments, display, folder):
 
 
 def soak(arguments, display, folder):
+    # Memory in use, not what glibc keeps of freed memory by thread.
+    environment = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=0:glibc.malloc.arena_max=1"}
     layers = pathlib.Path(f"/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json").exists()
-    environment = {"VK_INSTANCE_LAYERS": LAYER, "VK_LAYER_ENABLES": "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"}
+    if layers:
+        environment |= {"VK_INSTANCE_LAYERS": LAYER, "VK_LAYER_ENABLES": "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"}
     window = Window(
-        arguments.program, arguments.scene, folder, ["--size", arguments.size, "--max-bounces", "2"], environment if layers else {}
+        arguments.program, arguments.scene, folder, ["--size", arguments.size, "--max-bounces", "2"], environment
     )
     window.wait(lambda report: report["frames"] > 0)
     widgets = ["method.0", "method.1", "method.2", "method.3", "shift.0", "shift.1", "shift.2", "temporal", "compare", "freeze",

@@ -55,9 +55,11 @@ void drawCorrelationPlot(WindowState& state)
 {
     if (!state.correlation) return;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const ImVec2 wanted = {std::min(520 * state.scale, screen.x - 20), std::min(330 * state.scale, screen.y - 20)};
+    const ImVec2 wanted = {std::min(520 * state.scale, screen.x - 20), std::min(225 * state.scale, screen.y - 20)};
     ImGui::SetNextWindowSize(wanted, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowPos({screen.x - wanted.x - 10, 10}, ImGuiCond_FirstUseEver);
+    const float top =
+        std::min(155 * state.scale, screen.y - wanted.y - 10); // between the pixel's window and the errors
+    ImGui::SetNextWindowPos({screen.x - wanted.x - 10, top}, ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Autocovariance of the frames M-1 and M", &state.correlation,
                      ImGuiWindowFlags_NoFocusOnAppearing)) {
         for (const Side side : {A, B}) {

@@ -163,7 +163,7 @@ void drawPixel(WindowState& state)
 {
     if (!state.pixel) return;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({state.panelWidth() + 10, 10}, ImGuiCond_FirstUseEver); // plots open at the bottom
+    ImGui::SetNextWindowPos({state.panelWidth() + 10, 10}, ImGuiCond_FirstUseEver); // plots open below
     ImGui::SetNextWindowSizeConstraints({200, 0}, {screen.x, screen.y});
     if (ImGui::Begin("Pixel", &state.pixel, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
         if (!state.inspected) {
