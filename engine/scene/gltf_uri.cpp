@@ -72,11 +72,10 @@ bool isInside(const std::filesystem::path& path, const std::filesystem::path& fo
 std::vector<std::byte> decodeBase64(std::string_view text)
 {
     static const auto VALUES = [] {
-        std::array<int8_t, 256> values;
+        std::array<int, 256> values;
         values.fill(-1);
         const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        for (size_t i = 0; i < digits.size(); ++i)
-            values[static_cast<unsigned char>(digits[i])] = static_cast<int8_t>(i);
+        for (size_t i = 0; i < digits.size(); ++i) values[static_cast<unsigned char>(digits[i])] = static_cast<int>(i);
         return values;
     }();
 

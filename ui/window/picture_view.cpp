@@ -3,6 +3,7 @@
 #include "ui/window/false_color.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ui
 {
@@ -30,7 +31,7 @@ ScreenPicture screenOf(const Pictures& pictures, Source source, const View& view
 
 void split(ScreenPicture& left, const ScreenPicture& right, float wipe)
 {
-    const auto first = uint32_t(wipe * float(left.width) + 0.5f);
+    const auto first = uint32_t(std::lround(wipe * float(left.width)));
     for (uint32_t y = 0; y < left.height; ++y)
         for (uint32_t x = first; x < left.width; ++x)
             std::copy_n(&right.rgba[4 * pixelAt(right, x, y, left.width, left.height)], 4,

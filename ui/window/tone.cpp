@@ -23,7 +23,8 @@ uint8_t srgb(float linear)
         }
         return table;
     }();
-    return TABLE[size_t(std::clamp(linear, 0.0f, 1.0f) * STEPS + 0.5f)];
+    const float step = std::clamp(linear, 0.0f, 1.0f) * STEPS;
+    return TABLE[size_t(step + 0.5f)]; // NOLINT(bugprone-incorrect-roundings): never negative, and lround is slow
 }
 
 float curveOf(ToneCurve curve, float c)
