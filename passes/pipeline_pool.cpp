@@ -5,6 +5,20 @@
 namespace passes
 {
 
+namespace
+{
+
+constexpr size_t CAPACITY = 64;
+constexpr size_t CAPACITY_ON_CPU =
+    24; // there each is machine code of some 6 MB, which the driver's cache gives back soon
+
+} // namespace
+
+PipelinePool::PipelinePool(gpu::Device& device)
+    : device_(device), capacity_(device.adapter().kind == "cpu" ? CAPACITY_ON_CPU : CAPACITY)
+{
+}
+
 std::shared_ptr<const gpu::ComputePipeline> PipelinePool::get(const std::string& shader, const Variant& variant)
 {
     const auto found = std::ranges::find_if(
@@ -19,7 +33,7 @@ std::shared_ptr<const gpu::ComputePipeline> PipelinePool::get(const std::string&
 void PipelinePool::put(const std::string& shader, const Variant& variant, gpu::ComputePipeline&& pipeline)
 {
     entries_.push_front({shader, variant, std::make_shared<const gpu::ComputePipeline>(std::move(pipeline))});
-    if (entries_.size() > CAPACITY) entries_.pop_back();
+    if (entries_.size() > capacity_) entries_.pop_back();
 }
 
 } // namespace passes

@@ -15,14 +15,14 @@ namespace passes
 class PipelinePool
 {
   public:
-    static constexpr size_t CAPACITY = 64; // pipelines that nobody uses; the least recently used goes first
-
-    explicit PipelinePool(gpu::Device& device) : device_(device) {}
+    explicit PipelinePool(gpu::Device& device);
 
     // Compiles when it has not got it. Throws Error: the shader does not compile.
     std::shared_ptr<const gpu::ComputePipeline> get(const std::string& shader, const Variant& variant);
     void put(const std::string& shader, const Variant& variant, gpu::ComputePipeline&& pipeline);
-    void clear() { entries_.clear(); } // shaders have changed on disk; those in use live on
+    size_t size() const { return entries_.size(); }
+    size_t capacity() const { return capacity_; } // beyond, the least recently used goes; those in use live on
+    void clear() { entries_.clear(); }            // shaders have changed on disk; those in use live on
 
   private:
     struct Entry {
@@ -31,6 +31,7 @@ class PipelinePool
         std::shared_ptr<const gpu::ComputePipeline> pipeline;
     };
     gpu::Device& device_;
+    const size_t capacity_;
     std::list<Entry> entries_; // the last used first
 };
 

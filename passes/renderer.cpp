@@ -5,8 +5,9 @@
 #include "passes/camera_choice.h"
 #include "passes/estimator.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace passes
 {
@@ -144,7 +145,8 @@ void Renderer::createBuffers()
     };
     frameUniform_ =
         device_.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform});
-    counters_ = device_.createBuffer({.label = "Counters", .size = shared::COUNTER_COUNT * 2 * sizeof(uint32_t)});
+    counters_ =
+        device_.createBuffer({.label = "Counters", .size = uint64_t{shared::COUNTER_COUNT} * 2 * sizeof(uint32_t)});
     const PixelBytes bytes = pixelBytes(settings_);
     surfaces_ = perPixel("Surfaces", bytes.surfaces);
     color_ = perPixel("Color", bytes.color);
@@ -251,8 +253,9 @@ std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Varian
 // frames are identities, and left out.
 const Stage& Renderer::temporal()
 {
+    using Bits = std::array<uint32_t, sizeof(shared::CameraUniform) / sizeof(uint32_t)>;
     const bool resting = featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center &&
-                         std::memcmp(&frame_.camera, &frame_.previousCamera, sizeof(frame_.camera)) == 0;
+                         std::bit_cast<Bits>(frame_.camera) == std::bit_cast<Bits>(frame_.previousCamera);
     std::unique_ptr<Stage>& stage = resting ? temporalResting_ : temporalMoving_;
     if (!stage) {
         Variant variant = variant_;
