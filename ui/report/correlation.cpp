@@ -88,8 +88,8 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
 {
     const auto key = [](const CorrelationBatch& batch) { return std::tie(batch.index, batch.method); };
     std::ranges::stable_sort(batches, {}, key);
-    const auto doubles = std::ranges::unique(batches, {}, key);
-    batches.erase(doubles.begin(), doubles.end());
+    const auto equal = [&](const CorrelationBatch& a, const CorrelationBatch& b) { return key(a) == key(b); };
+    batches.erase(std::unique(batches.begin(), batches.end(), equal), batches.end());
 
     for (const CorrelationBatch& batch : batches) correlation.nonFinite += batch.nonFinite;
     const Batches plain = withLaw(batches, PATH_TRACER);

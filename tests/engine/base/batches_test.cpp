@@ -67,7 +67,7 @@ TEST(Combine, CoversTheTruthAsOftenAsItSays)
     Moments values;
     for (int trial = 0; trial < TRIALS; ++trial) {
         std::vector<BatchValue> batches;
-        for (const size_t runs : {8, 8, 5}) {
+        for (const size_t runs : {8u, 8u, 5u}) {
             const Chains chains = autoregressive(random, runs, 10);
             batches.push_back(meanCovariance(chains.before, chains.now, runs));
         }

@@ -105,7 +105,7 @@ TEST(Factors, ByHand)
 TEST(Factors, IntervalsOfRatiosCover)
 {
     std::mt19937_64 random(1);
-    for (const size_t repeats : {4, 8, 20}) {
+    for (const size_t repeats : {4u, 8u, 20u}) {
         int held = 0, heldAlone = 0;
         for (int trial = 0; trial < 1000; ++trial) {
             const std::vector<double> common = disturbances(random, repeats);

@@ -56,13 +56,13 @@ TEST_F(Pipeline, FetchesTablesOfBothFlavorsAtRandomPlaces)
     // Larger than the texel limit of the driver that has few: SwiftShader must have chosen storage buffers.
     constexpr uint32_t ELEMENTS = 100'000;
     constexpr uint32_t READS = 5'000;
-    Words table(4 * ELEMENTS);
+    Words table(size_t{4} * ELEMENTS);
     for (uint32_t i = 0; i < table.size(); ++i) table[i] = i * 2654435761u;
     Words indices(READS);
     for (uint32_t i = 0; i < READS; ++i) indices[i] = i * 7919u % ELEMENTS;
     const gpu::Buffer elements = upload("elements", table, gpu::Usage::Table);
     const gpu::Buffer places = upload("indices", indices);
-    const gpu::Buffer found = create<uint32_t>("found", 4 * READS);
+    const gpu::Buffer found = create<uint32_t>("found", size_t{4} * READS);
     run({.shader = TEST_SPIRV_DIR "/table_test",
          .buffers = {{"Elements", &elements}, {"Indices", &places}, {"Found", &found}},
          .threads = {READS}});

@@ -16,7 +16,7 @@ class Stall : public GpuTest
 };
 
 // Waits for an endless kernel, as the program would: exits with 1 after the error.
-[[noreturn]] void stall(gpu::DeviceDescriptor descriptor)
+[[noreturn]] void stall(const gpu::DeviceDescriptor& descriptor)
 {
     int code = 0;
     try {

@@ -35,7 +35,7 @@ std::vector<std::byte> jpeg(uint32_t width, uint32_t height, const std::vector<u
     }
     jpeg_finish_compress(&encoder);
     const auto* first = reinterpret_cast<const std::byte*>(data);
-    const std::vector<std::byte> bytes(first, first + size);
+    std::vector<std::byte> bytes(first, first + size);
     jpeg_destroy_compress(&encoder);
     std::free(data);
     return bytes;
