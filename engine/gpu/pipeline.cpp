@@ -288,7 +288,8 @@ BindGroupState::BindGroupState(DeviceState& owner) : device(&owner)
 BindGroupState::~BindGroupState()
 {
     device->park([vk = device->device, pool = pool, set = descriptors] {
-        if (set) vkFreeDescriptorSets(vk, pool, 1, &set); // lavapipe 22.3 keeps the names of sets that go with their pool
+        if (set)
+            vkFreeDescriptorSets(vk, pool, 1, &set); // lavapipe 22.3 keeps the names of sets that go with their pool
         vkDestroyDescriptorPool(vk, pool, nullptr);
     });
     --device->liveObjects;

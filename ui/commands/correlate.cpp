@@ -193,12 +193,12 @@ std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const s
     for (const NamedMethod& method : list)
         most = std::min(most, passes::Renderer::maxRuns(gpu.limits(), method.settings));
     std::vector<uint32_t> sizes;
-    for (uint32_t left = most < MIN_BATCH ? 0 : runs; left > 0; left -= sizes.back())
+    for (uint32_t left = runs; most >= MIN_BATCH && left > 0; left -= sizes.back())
         sizes.push_back(std::min(left, most));
-    if (sizes.size() > 1 && sizes.back() < MIN_BATCH) { // the last two share
-        const uint32_t both = most + sizes.back();
-        sizes.end()[-2] = both - both / 2;
-        sizes.back() = both / 2;
+    for (size_t i = sizes.size(); i-- > 1 && sizes.back() < MIN_BATCH;) { // too few: those before give some
+        const uint32_t given = std::min(sizes[i - 1] - MIN_BATCH, MIN_BATCH - sizes.back());
+        sizes[i - 1] -= given;
+        sizes.back() += given;
     }
     if (sizes.empty() || sizes.back() < MIN_BATCH)
         throw Error(

@@ -113,6 +113,8 @@ TEST_F(Correlate, MoreRunsGoOnWithTheBatchesThatAreThere)
     EXPECT_EQ(run(with(whole, "11")).exitCode, 0);
     EXPECT_EQ(readFile(grown + "/correlate.csv"), readFile(whole + "/correlate.csv"));
     EXPECT_EQ(rows(grown).front()["runs"], "11");
+    EXPECT_EQ(run(with(grown, "9")).exitCode, 0); // 3, 3 and 3: one is no batch
+    EXPECT_EQ(rows(grown).front()["runs"], "9");
     EXPECT_EQ(std::filesystem::last_write_time(batch), made);
 }
 
