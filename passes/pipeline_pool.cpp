@@ -9,8 +9,7 @@ namespace
 {
 
 constexpr size_t CAPACITY = 64;
-constexpr size_t CAPACITY_ON_CPU =
-    24; // there each is machine code of some 6 MB, which the driver's cache gives back soon
+constexpr size_t CAPACITY_ON_CPU = 24; // there each holds megabytes of machine code; the driver has a cache of its own
 
 } // namespace
 

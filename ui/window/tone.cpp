@@ -24,7 +24,7 @@ uint8_t srgb(float linear)
         return table;
     }();
     const float step = std::clamp(linear, 0.0f, 1.0f) * STEPS;
-    return TABLE[size_t(step + 0.5f)]; // NOLINT(bugprone-incorrect-roundings): never negative, and lround is slow
+    return TABLE[size_t(step + 0.5f)]; // NOLINT(bugprone-incorrect-roundings): never negative
 }
 
 float curveOf(ToneCurve curve, float c)
