@@ -3,7 +3,8 @@
 
   window_bench.py TRICHROME latency [SCENE]     from mouse motion to changed pixels on the screen, while frames take long
   window_bench.py TRICHROME toggle [SCENE]      from a click on a method to its first frame: cold, and again warm
-  window_bench.py TRICHROME soak [SCENE]        random changes of settings for --minutes (20), under Vulkan validation
+  window_bench.py TRICHROME soak [SCENE]        random changes of settings for --minutes (20), under Vulkan validation; in
+                                                between it comes to rest in one state, where memory must not grow
 
 Needs Xvfb and xdotool. Prints one JSON object. Exit code 1: the soak found growth of memory, messages, values that are not
 finite, or an end; 77: a tool is missing.
@@ -26,7 +27,9 @@ import tempfile
 import time
 
 LAYER = "VK_LAYER_KHRONOS_validation"
-GROWTH = 0.01  # of resident memory, at most
+GROWTH = 0.01  # of memory in use at rest, at most
+TURN_SECONDS = 90  # of random clicks, before the window comes to rest
+WARM_TURNS = 3  # until caches are full
 
 
 class Display:
@@ -165,10 +168,40 @@ def toggle(arguments, display, folder):
     return result
 
 
+def come_to_rest(window, display):
+    """All tools off, and every method and shift map shown once: what is in memory then should be the same every time."""
+
+    def click_until(widget, condition):
+        for _ in range(20):
+            if condition(window.report()):
+                return
+            display.click(*window.report()["places"][widget])
+            display.move(900, 700)
+            deadline = time.monotonic() + 5
+            while time.monotonic() < deadline and not condition(window.report()):
+                time.sleep(0.05)
+        sys.exit(f"window_bench: clicking {widget} does not help; the last report: {json.dumps(window.report())[:2000]}")
+
+    for key, widget in (("comparing", "compare"), ("paused", "pause"), ("converging", "converge"),
+                        ("correlation", "correlation"), ("pixel", "pixel")):  # fmt: skip
+        click_until(widget, lambda report, key=key: not report["asked"][key])
+    click_until("drop-reference", lambda report: not report["reference"])
+    click_until("temporal", lambda report: report["asked"]["settings"]["temporal"])
+    click_until("pixel-filter.0", lambda report: report["asked"]["settings"]["pixel-filter"] == "box")
+    for method, index in (("pt", 0), ("restir-pt", 1), ("grouped-restir", 3), ("rgb-restir", 2)):
+        click_until(f"method.{index}", lambda report, method=method: report["asked"]["settings"]["method"] == method)
+        for shift in ("replay", "reconnection", "hybrid"):
+            index = ["replay", "reconnection", "hybrid"].index(shift)
+            click_until(f"shift.{index}", lambda report, shift=shift: report["asked"]["settings"]["shift"] == shift)
+            asked = {"method": method, "shift": shift}
+            window.wait(lambda report, asked=asked: asked.items() <= report["settings"].items() and not report["activity"])
+    window.wait(lambda report: not report["activity"] and not report["ahead"] and report["frames"] > 10)
+
+
 def soak(arguments, display, folder):
     # Memory in use, not what glibc keeps of freed memory by thread.
     environment = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=0:glibc.malloc.arena_max=1"}
-    layers = pathlib.Path(f"/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json").exists()
+    layers = arguments.validate and pathlib.Path("/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json").exists()
     if layers:
         environment |= {"VK_INSTANCE_LAYERS": LAYER, "VK_LAYER_ENABLES": "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"}
     window = Window(
@@ -179,34 +212,44 @@ def soak(arguments, display, folder):
                "pixel-filter.0", "pixel-filter.1", "pause", "restart", "step", "undo", "redo", "reset-view", "layout.0",
                "layout.1", "layout.2", "pixel", "first.0", "second.1", "converge", "drop-reference", "correlation"]  # fmt: skip
     chance = random.Random(arguments.seed)
-    start, samples, nonfinite, clicks = time.monotonic(), [], 0, 0
-    while time.monotonic() - start < 60 * arguments.minutes:
-        report = window.report()
+    start, samples, turns, nonfinite, clicks = time.monotonic(), [], [], 0, 0
+    while len(turns) < WARM_TURNS + 2 or time.monotonic() - start < 60 * arguments.minutes:
+        turn_start = time.monotonic()
+        while time.monotonic() - turn_start < TURN_SECONDS and window.process.poll() is None:
+            report = window.report()
+            place = report.get("places", {}).get(chance.choice(widgets))
+            if place and place[1] < 720:
+                display.click(*place)
+                clicks += 1
+            if chance.random() < 0.1:
+                display.move(chance.uniform(420, 1260), chance.uniform(120, 600))
+            time.sleep(0.3)
+            nonfinite += sum(report.get("nonfinite", {}).values())
+            samples.append((window.resident(), report.get("memory_bytes", 0)))
         if window.process.poll() is not None:
             break
-        place = report.get("places", {}).get(chance.choice(widgets))
-        if place and place[1] < 720:
-            display.click(*place)
-            clicks += 1
-        if chance.random() < 0.1:
-            display.move(chance.uniform(420, 1260), chance.uniform(120, 600))
-        time.sleep(0.3)
-        nonfinite += sum(report.get("nonfinite", {}).values())
-        samples.append((time.monotonic() - start, window.resident(), report.get("memory_bytes", 0)))
+        come_to_rest(window, display)
+        turns.append((window.resident(), window.report()["heap_bytes"]))
+        minutes = (time.monotonic() - start) / 60
+        print(f"{minutes:6.1f} min, {clicks} clicks: resident, heap at rest (MB):", *(round(b / 1e6, 1) for b in turns[-1]),
+              file=sys.stderr, flush=True)  # fmt: skip
     ended = window.process.poll() is not None
     code = window.process.poll() if ended else window.close()
     log = window.log_file.read_text(encoding="utf-8")
     quarter = max(len(samples) // 4, 1)
-    peak = [max(s[1] for s in samples[i * quarter : (i + 1) * quarter] or samples[-1:]) for i in range(4)]
+    growth = [last / warm - 1 for warm, last in zip(turns[WARM_TURNS - 1], turns[-1])] if len(turns) > WARM_TURNS else [1, 1]
     result = {
-        "scene": arguments.scene, "minutes": arguments.minutes, "clicks": clicks, "validation": layers, "messages": log.count("\n"),
-        "nonfinite": nonfinite, "ended_early": ended, "exit_code": code,
-        "resident_mb_by_quarter": [round(p / 1e6, 1) for p in peak],
-        "growth_last_over_second_quarter": peak[3] / peak[1] - 1,
-        "device_mb_max": max(s[2] for s in samples) / 1e6,
-        "resident_median_mb": statistics.median(s[1] for s in samples) / 1e6,
+        "scene": arguments.scene, "minutes": (time.monotonic() - start) / 60, "clicks": clicks, "validation": layers,
+        "messages": log.count("\n"), "nonfinite": nonfinite, "ended_early": ended, "exit_code": code,
+        "resident_mb_at_rest": [round(turn[0] / 1e6, 1) for turn in turns],
+        "heap_mb_at_rest": [round(turn[1] / 1e6, 1) for turn in turns],
+        "resident_growth": growth[0], "heap_growth": growth[1],
+        "resident_peak_mb_by_quarter": [
+            round(max(s[0] for s in samples[i * quarter : (i + 1) * quarter] or samples[-1:]) / 1e6, 1) for i in range(4)
+        ],
+        "device_mb_max": max(s[1] for s in samples) / 1e6,
     }  # fmt: skip
-    failed = ended or code != 0 or nonfinite or log or result["growth_last_over_second_quarter"] > GROWTH
+    failed = ended or code != 0 or nonfinite or log or max(growth) > GROWTH
     if log:
         result["log"] = log[:2000]
     return result, failed
@@ -221,6 +264,7 @@ def main():
     parser.add_argument("--samples", type=int, default=200)
     parser.add_argument("--minutes", type=float, default=20)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--no-validate", dest="validate", action="store_false", help="soak without the validation layer")
     arguments = parser.parse_args()
     arguments.program = os.path.abspath(arguments.program)
     if os.path.exists(arguments.scene):

@@ -3,6 +3,10 @@
 #include "ui/window/false_color.h"
 
 #include <cmath>
+#include <cstdlib> // defines __GLIBC__
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +17,17 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
+
+// Memory in use by the process, without what the allocator keeps of freed memory; 0: this C library does not tell.
+size_t heapBytes()
+{
+#ifdef __GLIBC__
+    const struct mallinfo2 heap = mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+#else
+    return 0;
+#endif
+}
 
 Json reportOf(const Shot& shot)
 {
@@ -75,7 +90,9 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
         {"comparing", state.order.rival.has_value()},
         {"paused", state.order.paused},
         {"moved", state.order.pose.has_value()},
-        {"pixel", state.pixel}};
+        {"pixel", state.pixel},
+        {"converging", state.order.studies.reference},
+        {"correlation", state.order.studies.correlation}};
     json["activity"] = state.activity;
     json["ahead"] = state.ahead;
     json["message"] = state.message;
@@ -98,6 +115,7 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
             json["inspected"].push_back(shot->reservoirs[size_t(c) * shot->picture.pixels.size() + pixel].confidence);
     }
     json["scale"] = state.scale;
+    json["heap_bytes"] = heapBytes();
     json["places"] = state.places;
     return json;
 }
