@@ -79,9 +79,10 @@ float neighborRadius(const Settings& settings)
 } // namespace
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs)
+                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs,
+                   std::shared_ptr<PipelinePool> pipelines)
     : device_(device), settings_(settings), featureSet_(featureSet), runs_(runs),
-      pipelines_(std::make_shared<PipelinePool>(device))
+      pipelines_(pipelines ? std::move(pipelines) : std::make_shared<PipelinePool>(device))
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     orthographic_ = camera.orthographic;

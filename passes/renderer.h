@@ -55,9 +55,11 @@ class Renderer
     // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same
     // picture, slower: for tests and benchmarks. Independent `runs` of the picture lie below each other in what is
     // rendered and read, width x (height * runs); the first is what a lone run with this seed gives, to the bit.
+    // `pipelines`: another renderer's on this device, of whatever scene, so that shaders both need are compiled once.
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
-             scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1);
+             scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1,
+             std::shared_ptr<PipelinePool> pipelines = nullptr);
     // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
     // that methods can be compared in turns; wait() after each frame of either keeps their times apart. The environment
     // must be the sibling's.
@@ -92,7 +94,7 @@ class Renderer
     // A stage of the caller's own over what frames leave behind, and over `more`; it lives until apply().
     std::unique_ptr<Stage> makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more = {});
     const Variant& variant() const { return variant_; }
-    PipelinePool& pipelines() { return *pipelines_; }
+    const std::shared_ptr<PipelinePool>& pipelines() { return pipelines_; }
     gpu::Device& device() { return device_; }
     // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
     // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit.

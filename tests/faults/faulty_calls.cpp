@@ -89,6 +89,7 @@ extern "C" int __wrap_main(int argc, char** argv)
     return code;
 }
 
+// Not parenthesised: types and lists of parameters. NOLINTBEGIN(bugprone-macro-parentheses)
 #define FAULTY(name, type, failed, parameters, arguments)                                                              \
     extern "C" type __real_##name parameters;                                                                          \
     extern "C" type __wrap_##name parameters                                                                           \
@@ -100,6 +101,7 @@ extern "C" int __wrap_main(int argc, char** argv)
 // The common kind: makes an object of a device.
 #define FAULTY_CREATE(name, Info, Handle)                                                                              \
     FAULTY_VK(name, (VkDevice d, const Info* i, const VkAllocationCallbacks* a, Handle* h), (d, i, a, h))
+// NOLINTEND(bugprone-macro-parentheses)
 
 // clang-format off
 FAULTY_VK(vkCreateInstance, (const VkInstanceCreateInfo* i, const VkAllocationCallbacks* a, VkInstance* h), (i, a, h))

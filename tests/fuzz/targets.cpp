@@ -97,7 +97,7 @@ void cameraPath(Bytes bytes)
 {
     const scene::Camera base = {.forward = {0, 0, -1}};
     const passes::CameraAt at = passes::cameraPath(parseJson(bytes), base, {1, 2, 3});
-    for (const uint64_t frame : {0, 1, 2, 7, 100, 5000, 1000000}) checkCamera(at(frame));
+    for (const uint64_t frame : {0u, 1u, 2u, 7u, 100u, 5000u, 1000000u}) checkCamera(at(frame));
 }
 
 void pipelineCache(Bytes bytes)

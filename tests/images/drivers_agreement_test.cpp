@@ -1,6 +1,7 @@
 // Two drivers that share no code, lavapipe and SwiftShader, make the same picture of every built-in scene with every
 // method. Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
-// few paths on which rounding decides a branch. SwiftShader takes minutes to compile a renderer, so: ctest -R drivers.
+// few paths on which rounding decides a branch. SwiftShader takes minutes to compile a shader, so: ctest -R drivers, in
+// which all scenes share their shaders.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,39 @@ using passes::Method;
 
 constexpr const char* DRIVERS[] = {"/usr/share/vulkan/icd.d/lvp_icd.x86_64.json",
                                    "/usr/lib/chromium/vk_swiftshader_icd.json"};
+constexpr const char* NAMES[] = {"llvmpipe", "SwiftShader"};
 constexpr uint32_t RUNS = 24;
+constexpr float TOO_DIM = 1e-6f;
+
+// The scene with a material, a light and an environment of every kind that the built-in scenes have, unused or too dim
+// to be seen, so that all of them need the same shaders.
+scene::Scene withEveryKind(scene::Scene scene)
+{
+    for (const scene::BuiltInScene& builtIn : scene::builtInScenes()) {
+        const scene::Scene other = builtIn.make();
+        if (other.name == scene.name) continue;
+        scene.materials.insert(scene.materials.end(), other.materials.begin(), other.materials.end());
+        for (scene::PunctualLight light : other.lights) {
+            light.intensity *= TOO_DIM;
+            scene.lights.push_back(light);
+        }
+        if (other.environment.width > 0) {
+            scene.environment = other.environment;
+            for (glm::vec3& radiance : scene.environment.radiance) radiance *= TOO_DIM;
+        }
+    }
+    return scene;
+}
+
+struct Driver {
+    gpu::Device device;
+    std::shared_ptr<passes::PipelinePool> pipelines;
+
+    explicit Driver(const char* name)
+        : device(gpu::Device::create({.adapter = name})), pipelines(std::make_shared<passes::PipelinePool>(device))
+    {
+    }
+};
 
 class DriversAgreement : public testing::TestWithParam<std::tuple<scene::BuiltInScene, Method>>
 {
@@ -36,20 +69,28 @@ class DriversAgreement : public testing::TestWithParam<std::tuple<scene::BuiltIn
         for (const char* driver : DRIVERS)
             if (!std::filesystem::exists(driver)) GTEST_SKIP() << "SKIPPED, NOT TESTED: there is no " << driver;
         setenv("VK_ICD_FILENAMES", (std::string(DRIVERS[0]) + ":" + DRIVERS[1]).c_str(), 1);
+        for (size_t i = 0; i < std::size(NAMES); ++i)
+            if (!drivers_[i]) drivers_[i] = std::make_unique<Driver>(NAMES[i]);
     }
+    static void TearDownTestSuite()
+    {
+        for (std::unique_ptr<Driver>& driver : drivers_) driver.reset();
+    }
+
+    static std::unique_ptr<Driver> drivers_[std::size(NAMES)];
 };
+std::unique_ptr<Driver> DriversAgreement::drivers_[std::size(NAMES)];
 
 // The last of 3 frames with a moving camera, so that all stages take part; one picture for each seed.
-std::vector<image::Image> picturesOn(const std::string& driver, const scene::Scene& scene, Method method)
+std::vector<image::Image> picturesOn(Driver& driver, const scene::Scene& scene, Method method)
 {
-    gpu::Device device = gpu::Device::create({.adapter = driver});
     passes::Settings settings;
     settings.method = method;
     settings.width = 24;
     settings.height = 16;
     settings.maxBounces = 3;
     settings.spatial = 1;
-    passes::Renderer renderer(device, scene, settings);
+    passes::Renderer renderer(driver.device, scene, settings, {}, scene::FeatureSet::Needed, 1, driver.pipelines);
     const passes::CameraAt cameraAt = passes::cameraOrbit(scene.cameras.at(0), 2);
     std::vector<image::Image> pictures;
     for (settings.seed = 0; settings.seed < RUNS; ++settings.seed) {
@@ -61,16 +102,18 @@ std::vector<image::Image> picturesOn(const std::string& driver, const scene::Sce
             renderer.renderFrame();
         }
         pictures.push_back(renderer.readFrame());
-        for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << driver << " " << stage;
+        for (const auto& [stage, count] : renderer.stats().nonFinite)
+            EXPECT_EQ(count, 0u) << driver.device.adapter().name << " " << stage;
     }
     return pictures;
 }
 
 TEST_P(DriversAgreement, OnTheMeanOfEveryTile)
 {
-    const scene::Scene scene = std::get<0>(GetParam()).make();
-    const std::vector<image::Image> a = picturesOn("llvmpipe", scene, std::get<1>(GetParam()));
-    const std::vector<image::Image> b = picturesOn("SwiftShader", scene, std::get<1>(GetParam()));
+    const scene::Scene scene = withEveryKind(std::get<0>(GetParam()).make());
+    const std::vector<image::Image> a = picturesOn(*drivers_[0], scene, std::get<1>(GetParam()));
+    const std::vector<image::Image> b = picturesOn(*drivers_[1], scene, std::get<1>(GetParam()));
+    std::printf("compiled so far: %zu shaders\n", drivers_[1]->pipelines->size());
 
     PictureRuns difference, one;
     uint64_t equal = 0;

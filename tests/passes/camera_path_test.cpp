@@ -149,7 +149,7 @@ TEST(CameraOrbit, KeepsHeightDistanceAndTarget)
 {
     const scene::Camera base = baseCamera();
     const CameraAt at = passes::cameraOrbit(base, 1.5);
-    for (const uint64_t frame : {0, 1, 60, 239}) {
+    for (const uint64_t frame : {0u, 1u, 60u, 239u}) {
         const scene::Camera camera = at(frame);
         EXPECT_NEAR(camera.position.y, base.position.y, 1e-12);
         EXPECT_NEAR(glm::distance(camera.position, base.target), glm::distance(base.position, base.target), 1e-12);

@@ -116,8 +116,9 @@ TEST_F(InspectorTest, PathsLeadFromThePixelToLight)
                 ASSERT_EQ(path.size(), (seen.lengthAndShifts & 0xffff) + 1) << "pixel " << pixel << ", reservoir " << c;
                 EXPECT_EQ(path.back().kind, shared::POINT_LIGHT);
                 const glm::dvec2 begin = inPicture(path[0], settings), end = inPicture(path.back(), settings);
-                EXPECT_NEAR(begin.x, pixel % settings.width + 0.5, 0.02);
-                EXPECT_NEAR(begin.y, pixel / settings.width + 0.5, 0.02);
+                const uint32_t column = pixel % settings.width, row = pixel / settings.width;
+                EXPECT_NEAR(begin.x, column + 0.5, 0.02);
+                EXPECT_NEAR(begin.y, row + 0.5, 0.02);
                 joined += seen.leafAndJoint >> 16 > 0;
                 foreign += seen.seedPixel != pixel;
                 const bool atSpot = std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const auto& light) {

@@ -240,7 +240,7 @@ TEST_F(RaceTest, CachedReferencesAreFoundAndBadOnesMadeAgain)
 
 TEST_F(RaceTest, AReferenceFromAFileMustFit)
 {
-    image::Image picture{.width = 16, .height = 12, .pixels = std::vector<glm::vec3>(16 * 12, glm::vec3(0.5f))};
+    image::Image picture{.width = 16, .height = 12, .pixels = std::vector<glm::vec3>(size_t{16} * 12, glm::vec3(0.5f))};
     const std::string file = directory_ / "r.exr";
     image::write(file, picture, {});
     References list(file, settings_);

@@ -161,7 +161,7 @@ TEST_F(RendererTest, ListsTheStagesThatItsFramesConsistOf)
         EXPECT_EQ(listed, ran);
     }
     const Pixels before = frames(renderer, 1);
-    renderer.pipelines().clear();
+    renderer.pipelines()->clear();
     renderer.recompile();
     EXPECT_EQ(frames(renderer, 3), before);
 }

@@ -76,7 +76,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
         settings.average = false;
         return picturesAgree(renderRuns(device, world, settings, runs, cameraAt), expected);
     }
-    CHECK(!"there is such a scene");
+    CHECK(false && "there is such a scene");
     return {};
 }
 

@@ -25,7 +25,7 @@ SceneBuffers::SceneBuffers(gpu::Device& device, const scene::Scene& scene)
     add("Scene", std::as_bytes(std::span(&tables_.uniform, 1)), gpu::Usage::Uniform);
     const shared::FrameUniform frame = {};
     add("Frame", std::as_bytes(std::span(&frame, 1)), gpu::Usage::Uniform);
-    const std::vector<uint32_t> counters(2 * shared::COUNTER_COUNT);
+    const std::vector<uint32_t> counters(size_t{2} * shared::COUNTER_COUNT);
     add("Counters", std::as_bytes(std::span(counters)), gpu::Usage::Storage);
 }
 

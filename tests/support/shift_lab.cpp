@@ -37,9 +37,9 @@ ShiftLab::ShiftLab(gpu::Device& device, const std::string& kernels, passes::Shif
     : device_(device), kernels_(kernels), pipelines_(device),
       frame_(
           device.createBuffer({.label = "Frame", .size = sizeof(shared::FrameUniform), .usage = gpu::Usage::Uniform})),
-      counters_(device.createBuffer({.label = "Counters", .size = shared::COUNTER_COUNT * 2 * sizeof(uint32_t)})),
+      counters_(device.createBuffer({.label = "Counters", .size = 2 * sizeof(uint32_t) * shared::COUNTER_COUNT})),
       surfaces_(device.createBuffer({.label = "Surfaces",
-                                     .size = 2 * SIZE * SIZE * sizeof(glm::uvec4),
+                                     .size = 2 * sizeof(glm::uvec4) * SIZE * SIZE,
                                      .usage = gpu::Usage::Storage | gpu::Usage::Table}))
 {
     const scene::Scene scene = cabinet();
@@ -92,7 +92,7 @@ void ShiftLab::run(const std::string& kernel, const passes::NamedBuffers& buffer
     device_.queue().wait(device_.queue().submit(std::move(encoder)));
     const std::vector<uint32_t> counters = device_.queue().readAs<uint32_t>(counters_);
     for (uint32_t i = 0; i < shared::STAGE_COUNT; ++i)
-        EXPECT_EQ(counters[2 * (shared::COUNTER_NONFINITE + i)], 0u) << kernel;
+        EXPECT_EQ(counters[size_t{2} * (shared::COUNTER_NONFINITE + i)], 0u) << kernel;
 }
 
 template <class T>

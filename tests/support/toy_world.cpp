@@ -130,7 +130,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
         buffers_.emplace(name, device.createBuffer({.label = name, .size = size, .usage = usage}));
     };
     add("Frame", sizeof(shared::FrameUniform), gpu::Usage::Uniform);
-    add("Counters", shared::COUNTER_COUNT * 2 * sizeof(uint32_t));
+    add("Counters", 2 * sizeof(uint32_t) * shared::COUNTER_COUNT);
     add("Domains", domainBytes(false).size());
     for (const char* set : {"Reservoirs", "History"}) add(set, pixels * (count * 2 * 16 + 4));
     for (const char* set : {"ReservoirPaths", "HistoryPaths"}) add(set, pixels * count * 3 * 16);
@@ -193,10 +193,11 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
         device_.queue().submit(std::move(encoder));
     }
     const std::vector<uint32_t> counters = device_.queue().readAs<uint32_t>(buffers_.at("Counters"));
-    for (uint32_t i = 0; i < shared::STAGE_COUNT; ++i) EXPECT_EQ(counters[2 * (shared::COUNTER_NONFINITE + i)], 0u);
+    for (uint32_t i = 0; i < shared::STAGE_COUNT; ++i)
+        EXPECT_EQ(counters[size_t{2} * (shared::COUNTER_NONFINITE + i)], 0u);
 
     const std::vector<glm::vec4> color = device_.queue().readAs<glm::vec4>(buffers_.at("Color"));
-    constexpr size_t PIXELS = SIZE * SIZE;
+    constexpr size_t PIXELS = size_t{SIZE} * SIZE;
     std::vector<image::Image> pictures(runs / shared::TOY_GROUP, {SIZE, SIZE, std::vector<glm::vec3>(PIXELS)});
     for (size_t i = 0; i < runs * PIXELS; ++i)
         pictures[i / PIXELS / shared::TOY_GROUP].pixels[i % PIXELS] +=

@@ -82,7 +82,7 @@ TEST_P(ReferenceBsdf, SamplesHaveTheDensityTheyClaim)
 {
     for (const double cosine : {0.9, 0.35, -0.6}) {
         const ReferenceSurface surface = seenFrom(direction(cosine, 0.4));
-        Moments sampled, integrated, density, backward;
+        Moments sampled, integrated, density;
         for (int i = 0; i < 400000; ++i) {
             const ReferenceSurface::Sample s = surface.sample(random_);
             sampled.add(s.dirac ? 0 : s.weight.x);

@@ -19,7 +19,7 @@ class Synthetic
 
     image::Image run(float factor = 1)
     {
-        image::Image picture{20, 13, std::vector<glm::vec3>(20 * 13)};
+        image::Image picture{20, 13, std::vector<glm::vec3>(size_t{20} * 13)};
         std::gamma_distribution<float> noise(100.0f, 0.01f);
         for (uint32_t y = 0; y < 13; ++y)
             for (uint32_t x = 0; x < 20; ++x) {
@@ -41,7 +41,7 @@ class Synthetic
     // The same as a picture of independent pixels.
     PixelEstimates pixels(int count)
     {
-        std::vector<std::array<Moments, 3>> moments(20 * 13);
+        std::vector<std::array<Moments, 3>> moments(size_t{20} * 13);
         for (int i = 0; i < count; ++i) {
             const image::Image picture = run();
             for (size_t p = 0; p < moments.size(); ++p)

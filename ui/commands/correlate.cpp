@@ -166,7 +166,7 @@ class Correlator
 passes::Settings CorrelateCommand::readSettings() const
 {
     if (settings.given("method")) throw UsageError("correlate takes --methods, a list, instead of --method.");
-    const passes::Settings base = settings.read();
+    passes::Settings base = settings.read();
     if (base.pixelFilter != passes::PixelFilter::Center)
         throw UsageError("correlate follows what a pixel's center sees; --pixel-filter must be center, not box.");
     return base;
@@ -174,7 +174,7 @@ passes::Settings CorrelateCommand::readSettings() const
 
 std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
 {
-    const std::vector<NamedMethod> list = methods.read(base);
+    std::vector<NamedMethod> list = methods.read(base);
     for (const NamedMethod& method : list) {
         if (method.settings.method == passes::Method::Pt)
             throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);

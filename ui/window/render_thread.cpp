@@ -204,11 +204,14 @@ void RenderThread::load(const Order& order)
         }));
     say("Building the BVH");
     int shown = -1;
-    auto renderer = std::make_unique<passes::Renderer>(*device_, *world, settingsOf(order, A), [&](double fraction) {
+    const auto progress = [&](double fraction) {
         const int percent = int(100 * fraction);
         if (percent != shown) say(fmt::format("Building the BVH: {}%", shown = percent));
         if (percent >= 100) say("Compiling");
-    });
+    };
+    auto renderer =
+        std::make_unique<passes::Renderer>(*device_, *world, settingsOf(order, A), progress, scene::FeatureSet::Needed,
+                                           1, sides_[A] ? sides_[A]->renderer().pipelines() : nullptr);
     studies_.clear();
     sides_[B].reset(); // of the old scene
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
@@ -236,7 +239,7 @@ void RenderThread::tune(const Order& order, Side side)
         pending_ = true;
         return;
     }
-    compiler_.handOver(renderer.pipelines());
+    compiler_.handOver(*renderer.pipelines());
     if (contender)
         contender->follow(order, *scene_);
     else
@@ -255,7 +258,7 @@ void RenderThread::study(const Order& order)
     passes::Renderer& like = sides_[A]->renderer();
     const CompileAhead::Stages stages = Studies::stagesFor(order, like);
     if (!stages.empty() && !compiler_.ready(stages)) return;
-    compiler_.handOver(like.pipelines());
+    compiler_.handOver(*like.pipelines());
     bool news = false;
     try {
         news = studies_.follow(order, like, *scene_);
@@ -319,7 +322,7 @@ void RenderThread::reloadShaders()
                 for (auto& stage : side->renderer().stagesFor(side->renderer().settings())) stages.push_back(stage);
         if (!compiler_.ready(stages)) return;
         reload_ = false;
-        passes::PipelinePool& pool = sides_[A]->renderer().pipelines();
+        passes::PipelinePool& pool = *sides_[A]->renderer().pipelines();
         pool.clear();
         compiler_.handOver(pool);
         for (const std::unique_ptr<Contender>& side : sides_)

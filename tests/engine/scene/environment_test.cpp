@@ -17,7 +17,8 @@ namespace
 image::Image picture(uint32_t width, uint32_t height)
 {
     image::Image image{width, height, {}};
-    for (uint32_t i = 0; i < width * height; ++i) image.pixels.emplace_back(float(i % 7), float(i / width), 1);
+    for (uint32_t y = 0, i = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x, ++i) image.pixels.emplace_back(float(i % 7), float(y), 1);
     return image;
 }
 

@@ -35,7 +35,7 @@ class Sampling : public GpuTest
                       const std::function<glm::dvec2(const glm::dvec3&)>& coordinates,
                       const std::function<double(double, double)>& density)
     {
-        std::vector<double> counts(BINS * BINS, 0), expected(BINS * BINS, 0);
+        std::vector<double> counts(size_t{BINS} * BINS, 0), expected(counts);
         for (const glm::vec4& s : samples) {
             const glm::dvec2 at = coordinates(glm::dvec3(s)) * double{BINS};
             const int i = std::min(int(at.x), BINS - 1), j = std::min(int(at.y), BINS - 1);

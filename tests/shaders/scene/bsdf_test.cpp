@@ -1,6 +1,7 @@
 // Scattering on the device: its values against the float64 reference, its samples against their own density and values.
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 
@@ -150,17 +151,18 @@ TEST_F(Bsdf, SamplesWithTheDensityItClaims)
     std::vector<dvec3> grid; // midpoints of a fine grid, bin by bin
     for (int bin = 0; bin < ROWS * COLUMNS; ++bin)
         for (int step = 0; step < STEPS * STEPS; ++step) {
-            const double row = bin / COLUMNS + (step / STEPS + 0.5) / STEPS;
-            const double column = bin % COLUMNS + (step % STEPS + 0.5) / STEPS;
+            const std::div_t place = std::div(bin, COLUMNS), within = std::div(step, STEPS);
+            const double row = place.quot + (within.quot + 0.5) / STEPS;
+            const double column = place.rem + (within.rem + 0.5) / STEPS;
             const double x = 1 - 2 * row / ROWS, phi = 2 * PI * column / COLUMNS;
             grid.emplace_back(x, std::sqrt(1 - x * x) * std::cos(phi), std::sqrt(1 - x * x) * std::sin(phi));
         }
     forEachSurface([&](const dvec3& wo) {
         const std::vector<Sampled> samples = sample(wo, SAMPLES);
         const std::vector<Evaluated> densities = evaluate(wo, grid);
-        std::vector<double> counts(ROWS * COLUMNS, 0), expected(ROWS * COLUMNS, 0);
+        std::vector<double> counts(size_t{ROWS} * COLUMNS, 0), expected(counts);
         for (size_t i = 0; i < grid.size(); ++i)
-            expected[i / (STEPS * STEPS)] +=
+            expected[i / (size_t{STEPS} * STEPS)] +=
                 double{SAMPLES} * densities[i].density * 4 * PI / double(ROWS * COLUMNS * STEPS * STEPS);
         double lost = 0;
         for (const Sampled& s : samples) {

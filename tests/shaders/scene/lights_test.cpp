@@ -111,7 +111,8 @@ TEST_F(Lights, OfTheSkyAreSampledWithTheDensityTheyClaim)
     std::vector<double> counts(32, 0), expected(32, 0);
     double sum = 0;
     const auto weight = [&](uint32_t i) { // of a texel: radiance times solid angle
-        const double band = std::cos(PI * (i / 8) / 4) - std::cos(PI * (i / 8 + 1) / 4);
+        const uint32_t row = i / 8;
+        const double band = std::cos(PI * row / 4) - std::cos(PI * (row + 1) / 4);
         return double{scene.environment.radiance[i].x} * band * 2 * PI / 8;
     };
     for (uint32_t i = 0; i < 32; ++i) sum += weight(i);

@@ -76,7 +76,7 @@ TEST_F(CompareWindow, SplitFlipAndDifferenceShowTwoSettings)
 // The reference is a black picture from a file, so the error of a picture is known from the picture.
 TEST_F(CompareWindow, ErrorsAreMeasuredAgainstAFileAndAFrozenPicture)
 {
-    image::Image black{.width = 64, .height = 36, .pixels = std::vector<glm::vec3>(64 * 36)};
+    image::Image black{.width = 64, .height = 36, .pixels = std::vector<glm::vec3>(size_t{64} * 36)};
     image::write(folder_ + "/black.exr", black, {});
     view({"--reference", folder_ + "/black.exr"});
     ASSERT_TRUE(comes([](const Json& json) { return json["errors"]["a"]["points"] > 3; }));

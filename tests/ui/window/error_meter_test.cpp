@@ -35,7 +35,7 @@ ui::ReferencePointer converging(float value)
 ui::ErrorCurve curveWith(const ui::ErrorMeter& meter, double mse)
 {
     for (int i = 0; i < 2000; ++i) {
-        const ui::ErrorCurve curve = meter.curve(ui::A);
+        ui::ErrorCurve curve = meter.curve(ui::A);
         if (!curve.empty() && std::abs(curve.back().metrics.mse - mse) < 1e-6) return curve;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }

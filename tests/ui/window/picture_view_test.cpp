@@ -13,14 +13,14 @@ ui::ShotPointer shotOf(uint32_t width, uint32_t height, float gray)
 {
     auto shot = std::make_shared<ui::Shot>();
     shot->picture = {
-        .width = width, .height = height, .pixels = std::vector<glm::vec3>(width * height, glm::vec3(gray))};
+        .width = width, .height = height, .pixels = std::vector<glm::vec3>(size_t{width} * height, glm::vec3(gray))};
     return shot;
 }
 
 // With no tone curve, 0.25 shows as 137 and 1 as 255 (sRGB).
 int redAt(const ui::ScreenPicture& screen, uint32_t x, uint32_t y)
 {
-    return screen.rgba[4 * (y * screen.width + x)];
+    return screen.rgba[size_t{4} * (y * screen.width + x)];
 }
 
 const ui::Tone PLAIN{.stops = 0, .curve = ui::ToneCurve::None};

@@ -69,7 +69,7 @@ TEST_F(FineDisplay, NothingIsClippedAtAnyScale)
         EXPECT_TRUE(until(asks("pixel", true), [&] { key("i"); }));
         EXPECT_TRUE(until([](const Json& json) { return json["places"].contains("size"); },
                           [&] { click("edit.0"); })); // A's settings are the most
-        const Json seen = report();
+        Json seen = report();
         EXPECT_EQ(close(), 0);
         EXPECT_EQ(seen["scale"], double(scale));
         for (const auto& [name, place] : seen["places"].items()) {
@@ -82,7 +82,7 @@ TEST_F(FineDisplay, NothingIsClippedAtAnyScale)
     EXPECT_EQ(one["picture"], Json({400, 112, 880, 495}));
     EXPECT_EQ(two["picture"], Json({800, 225, 1760, 990}));
     for (const auto& [name, place] : one["places"].items())
-        for (const size_t i : {0, 1})
+        for (const size_t i : {0u, 1u})
             EXPECT_NEAR(two["places"][name][i].get<double>(), 2 * place[i].get<double>(), 30) << name;
 }
 
