@@ -228,7 +228,7 @@ nlohmann::ordered_json raceFeatures(gpu::Device& device, const std::string& name
         for (const auto& [stage, constants] : renderer.stagesFor(settings, options.orbit != 0)) {
             passes::Variant more = constants;
             more.*member = true;
-            renderer.pipelines().put(
+            renderer.pipelines()->put(
                 stage, constants, device.createComputePipeline({.label = stage, .constants = passes::constants(more)}));
         }
         renderer.recompile();
