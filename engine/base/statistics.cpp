@@ -158,7 +158,9 @@ double normalQuantile(double p)
 
 double studentUpperTail(double t, double degreesOfFreedom)
 {
-    if (std::isinf(degreesOfFreedom)) return normalUpperTail(t);
+    // From here on it is normal within 1e-6 of the tail, and the gamma functions below lose their digits.
+    constexpr double MANY_DEGREES = 1e8;
+    if (degreesOfFreedom > MANY_DEGREES) return normalUpperTail(t);
     if (std::isinf(t)) return t > 0 ? 0 : 1;
     const double tail = 0.5 * incompleteBeta(degreesOfFreedom / 2, 0.5, degreesOfFreedom / (degreesOfFreedom + t * t));
     return t >= 0 ? tail : 1 - tail;

@@ -13,6 +13,7 @@ finite, or an end; 77: a tool is missing.
 import argparse
 import ctypes
 import json
+import math
 import mmap
 import os
 import pathlib
@@ -28,7 +29,7 @@ import time
 
 LAYER = "VK_LAYER_KHRONOS_validation"
 GROWTH = 0.01  # of memory in use at rest, at most
-TURN_SECONDS = 30  # of random clicks, before the window comes to rest
+TURN_SECONDS = 60  # of random clicks, before the window comes to rest
 WARM_TURNS = 3  # until caches are full
 
 
@@ -169,7 +170,8 @@ def toggle(arguments, display, folder):
 
 
 def come_to_rest(window, display):
-    """All tools off, and every method and shift map shown once: what is in memory then should be the same every time."""
+    """All tools off, and every method and shift map shown once: what is in memory then should be the same every time.
+    Returns that: resident, and in use on the heap."""
 
     def click_until(widget, condition):
         for _ in range(20):
@@ -196,7 +198,14 @@ def come_to_rest(window, display):
             click_until(f"shift.{index}", lambda report, shift=shift: report["asked"]["settings"]["shift"] == shift)
             asked = {"method": method, "shift": shift}
             window.wait(lambda report, asked=asked: asked.items() <= report["settings"].items() and not report["activity"])
-    window.wait(lambda report: not report["activity"] and not report["ahead"] and report["frames"] > 10)
+    quiet = 0
+    memory = []
+    while quiet < 30:  # for three seconds on end, as compilers take 100 MB and more for a moment
+        report = window.report()
+        quiet = quiet + 1 if report and not report["activity"] and not report["ahead"] and report["frames"] > 10 else 0
+        memory.append((window.resident(), report.get("heap_bytes", math.inf)))
+        time.sleep(0.1)
+    return [min(values) for values in zip(*memory[-quiet:])]
 
 
 def soak(arguments, display, folder):
@@ -229,8 +238,7 @@ def soak(arguments, display, folder):
             samples.append((window.resident(), report.get("memory_bytes", 0)))
         if window.process.poll() is not None:
             break
-        come_to_rest(window, display)
-        turns.append((window.resident(), window.report()["heap_bytes"]))
+        turns.append(come_to_rest(window, display))
         minutes = (time.monotonic() - start) / 60
         print(f"{minutes:6.1f} min, {clicks} clicks: resident, heap at rest (MB):", *(round(b / 1e6, 1) for b in turns[-1]),
               file=sys.stderr, flush=True)  # fmt: skip
