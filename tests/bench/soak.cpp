@@ -1,7 +1,6 @@
 // Hours in minutes: one device renders scenes and settings in turn, over and over. Memory must stay flat, no handle may
 // be left, no value be without a number, and every turn must make the same pixels to the bit. ./run soak MINUTES.
 
-#include <malloc.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -18,6 +17,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/fingerprint.h"
+#include "engine/base/memory.h"
 #include "engine/gpu/vulkan.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
@@ -64,13 +64,13 @@ Usage usageOf(gpu::Device& device)
 {
     // Mesa takes pipelines apart at the next submission (lavapipe's queue), 40 MB of them.
     device.queue().wait(device.queue().submit(device.createCommandEncoder("nothing")));
-    malloc_trim(0);
+    memory::giveBackFreed();
     std::ifstream statm("/proc/self/statm");
     double size = 0, resident = 0;
     statm >> size >> resident;
     const gpu::DeviceState& state = device.state();
     return {.residentBytes = resident * double(sysconf(_SC_PAGESIZE)),
-            .heapBytes = double(mallinfo2().uordblks + mallinfo2().hblkhd),
+            .heapBytes = double(memory::heapBytes()),
             .files = entriesOf("/proc/self/fd"),
             .threads = entriesOf("/proc/self/task"),
             .commandBuffers = state.freeCommandBuffers.size(),

@@ -200,7 +200,7 @@ def come_to_rest(window, display):
             window.wait(lambda report, asked=asked: asked.items() <= report["settings"].items() and not report["activity"])
     quiet = 0
     memory = []
-    while quiet < 30:  # for three seconds on end, as compilers take 100 MB and more for a moment
+    while quiet < 60:  # for six seconds on end: compilers take 100 MB and more for a moment, and then give them back
         report = window.report()
         quiet = quiet + 1 if report and not report["activity"] and not report["ahead"] and report["frames"] > 10 else 0
         memory.append((window.resident(), report.get("heap_bytes", math.inf)))

@@ -1,8 +1,10 @@
 #include "ui/window/compile_ahead.h"
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 
 #include <algorithm>
+#include <chrono>
 #include <unistd.h>
 
 namespace ui
@@ -11,8 +13,9 @@ namespace ui
 namespace
 {
 
-constexpr int BACKGROUND = 10;          // nice: after the renderer, where both are on the CPU
-constexpr uint64_t BUFFER_BYTES = 1024; // larger than every uniform block
+constexpr int BACKGROUND = 10;           // nice: after the renderer, where both are on the CPU
+constexpr std::chrono::seconds QUIET(2); // after which there is time to tidy up
+constexpr uint64_t BUFFER_BYTES = 1024;  // larger than every uniform block
 
 gpu::Usage usageOf(gpu::Binding::Kind kind)
 {
@@ -123,8 +126,15 @@ void CompileAhead::run()
 {
     [[maybe_unused]] const int niceness = nice(BACKGROUND); // of this thread, on Linux
     std::unique_lock lock(mutex_);
+    const auto due = [&] { return stop_ || (device_ && (!wanted_.empty() || !putOff_.empty())); };
     while (true) {
-        changed_.wait(lock, [&] { return stop_ || (device_ && (!wanted_.empty() || !putOff_.empty())); });
+        // Compilers of CPU drivers, here and wherever a new pipeline first ran, leave hundreds of MB behind.
+        if (!changed_.wait_for(lock, QUIET, due)) {
+            lock.unlock();
+            memory::giveBackFreed();
+            lock.lock();
+            changed_.wait(lock, due);
+        }
         if (stop_) return;
         const bool urgent = !wanted_.empty();
         std::deque<Stage>& list = urgent ? wanted_ : putOff_;

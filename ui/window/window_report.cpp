@@ -1,12 +1,9 @@
 #include "ui/window/window_report.h"
 
+#include "engine/base/memory.h"
 #include "ui/window/false_color.h"
 
 #include <cmath>
-#include <cstdlib> // defines __GLIBC__
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <nlohmann/json.hpp>
 
@@ -17,17 +14,6 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-// Memory in use by the process, without what the allocator keeps of freed memory; 0: this C library does not tell.
-size_t heapBytes()
-{
-#ifdef __GLIBC__
-    const struct mallinfo2 heap = mallinfo2();
-    return heap.uordblks + heap.hblkhd;
-#else
-    return 0;
-#endif
-}
 
 Json reportOf(const Shot& shot)
 {
@@ -115,7 +101,7 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
             json["inspected"].push_back(shot->reservoirs[size_t(c) * shot->picture.pixels.size() + pixel].confidence);
     }
     json["scale"] = state.scale;
-    json["heap_bytes"] = heapBytes();
+    json["heap_bytes"] = memory::heapBytes();
     json["places"] = state.places;
     return json;
 }
