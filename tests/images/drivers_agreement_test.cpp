@@ -1,7 +1,8 @@
-// Two drivers, lavapipe and another, make the same picture of every built-in scene with every method (SwiftShader, which
-// shares no code with lavapipe, only with the path tracer: it cannot compile ReSTIR in this memory). Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
-// few paths on which rounding decides a branch. SwiftShader takes minutes to compile a shader, so: ctest -R drivers, in
-// which scenes share their shaders.
+// Two drivers, lavapipe and another, make the same picture of every built-in scene with every method (SwiftShader,
+// which shares no code with lavapipe, only with the path tracer: it cannot compile ReSTIR in this memory). Runs have
+// equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the few paths on which
+// rounding decides a branch. SwiftShader takes minutes to compile a shader, so: ctest -R drivers, in which scenes share
+// their shaders.
 
 #include <gtest/gtest.h>
 
