@@ -200,7 +200,7 @@ def come_to_rest(window, display):
             window.wait(lambda report, asked=asked: asked.items() <= report["settings"].items() and not report["activity"])
     quiet = 0
     memory = []
-    while quiet < 60:  # for six seconds on end: compilers take 100 MB and more for a moment, and then give them back
+    while quiet < 150:  # for fifteen seconds on end: what compilers freed is given back after two, and again after ten
         report = window.report()
         quiet = quiet + 1 if report and not report["activity"] and not report["ahead"] and report["frames"] > 10 else 0
         memory.append((window.resident(), report.get("heap_bytes", math.inf)))

@@ -22,6 +22,15 @@ Outcome runProgram(const std::filesystem::path& program, const Launch& launch)
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, outFile.c_str(), FLAGS, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errFile.c_str(), FLAGS, 0600);
 
+    // A shell's "&" makes what it starts ignore Ctrl-C, and a child inherits that: here each can be interrupted.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t heeded;
+    sigemptyset(&heeded);
+    sigaddset(&heeded, SIGINT);
+    posix_spawnattr_setsigdefault(&attributes, &heeded);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+
     std::vector<std::string> words = launch.arguments;
     words.insert(words.begin(), program.string());
     std::vector<char*> argv;
@@ -29,8 +38,9 @@ Outcome runProgram(const std::filesystem::path& program, const Launch& launch)
     argv.push_back(nullptr);
 
     pid_t child = 0;
-    const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+    const int failure = posix_spawn(&child, program.c_str(), &actions, &attributes, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     if (failure != 0) throw Error("Cannot run \"{}\" (errno {}).", program.string(), failure);
     if (launch.signalAfter.count() > 0) {
         std::this_thread::sleep_for(launch.signalAfter);

@@ -22,9 +22,10 @@ struct RestirCase {
     bool moves; // the camera turns by 3 degrees a frame
     uint32_t maxConfidence;
     uint32_t runs = 200;
+    uint32_t frames = 5;
 
     std::string name() const;
-    // The last of 5 frames, its mean over many runs, against the path tracer's picture from the same place.
+    // The last frame, its mean over many runs, against the path tracer's picture from the same place.
     TileVerdict verdict(gpu::Device& device) const;
 };
 void PrintTo(const RestirCase& c, std::ostream* os);

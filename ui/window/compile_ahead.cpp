@@ -14,7 +14,8 @@ namespace
 {
 
 constexpr int BACKGROUND = 10;           // nice: after the renderer, where both are on the CPU
-constexpr std::chrono::seconds QUIET(2); // after which there is time to tidy up
+// After these there is time to tidy up: soon, and once more what the renderer's own first runs have left by then.
+constexpr std::chrono::seconds QUIET[] = {std::chrono::seconds(2), std::chrono::seconds(8)};
 constexpr uint64_t BUFFER_BYTES = 1024;  // larger than every uniform block
 
 gpu::Usage usageOf(gpu::Binding::Kind kind)
@@ -129,12 +130,13 @@ void CompileAhead::run()
     const auto due = [&] { return stop_ || (device_ && (!wanted_.empty() || !putOff_.empty())); };
     while (true) {
         // Compilers of CPU drivers, here and wherever a new pipeline first ran, leave hundreds of MB behind.
-        if (!changed_.wait_for(lock, QUIET, due)) {
+        for (const std::chrono::seconds quiet : QUIET) {
+            if (changed_.wait_for(lock, quiet, due)) break;
             lock.unlock();
             memory::giveBackFreed();
             lock.lock();
-            changed_.wait(lock, due);
         }
+        changed_.wait(lock, due);
         if (stop_) return;
         const bool urgent = !wanted_.empty();
         std::deque<Stage>& list = urgent ? wanted_ : putOff_;

@@ -1,5 +1,6 @@
 #include "ui/window/plots.h"
 
+#include "passes/autocovariance.h"
 #include "ui/window/axes.h"
 
 namespace ui
@@ -41,11 +42,13 @@ std::string sentenceOf(const WindowState& state, Side side)
     const std::shared_ptr<const CorrelationCurve>& curve = state.findings->curves[side];
     const passes::Settings settings = settingsOf(state.order, side);
     if (settings.method == passes::Method::Pt) return fmt::format("{}: the path tracer's frames are independent", name);
+    if (!settings.temporal) return fmt::format("{}: reuse in time is off, so frames are independent", name);
     if (settings.maxConfidence < 2) return fmt::format("{}: M_c is 1, so there is no history", name);
     if (!curve || curve->points.empty()) return fmt::format("{}: no point yet", name);
     std::string text = fmt::format("{}: {} x {} pixels, {} runs, {} batches done", name, curve->width, curve->height,
                                    curve->runs, curve->batches);
     if (curve->plateau) text += fmt::format("; levels off at P = {:.2g}", *curve->plateau);
+    if (!passes::lawHolds(settings, false)) text += "; no law is known with reuse in space";
     return text;
 }
 
