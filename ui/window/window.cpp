@@ -7,6 +7,7 @@
 #include "ui/window/camera_hands.h"
 #include "ui/window/compare_room.h"
 #include "ui/window/frame.h"
+#include "ui/window/mouse.h"
 #include "ui/window/panel.h"
 #include "ui/window/pixel_room.h"
 #include "ui/window/plots.h"
@@ -72,6 +73,12 @@ class Window
             if (action == GLFW_PRESS)
                 static_cast<Window*>(glfwGetWindowUserPointer(window))->state_.keys.push_back({key, modifiers});
         });
+        glfwSetCursorPosCallback(frame_.window, [](GLFWwindow* window, double x, double y) {
+            static_cast<Window*>(glfwGetWindowUserPointer(window))->mouse_.moved({float(x), float(y)});
+        });
+        glfwSetMouseButtonCallback(frame_.window, [](GLFWwindow* window, int button, int action, int) {
+            static_cast<Window*>(glfwGetWindowUserPointer(window))->mouse_.turned(button, action == GLFW_PRESS);
+        });
         ImGui_ImplGlfw_InitForVulkan(frame_.window, true); // after our own callbacks: it calls them too
         presenter_ = std::make_unique<Presenter>(frame_.window);
         if (!options.reference.empty()) loadReference(options.reference);
@@ -92,7 +99,7 @@ class Window
             const double wait = hot > 0 ? 0.008 : IDLE_SECONDS;
             glfwWaitEventsTimeout(wait);
             const double now = glfwGetTime();
-            hot = now - waitStart < wait ? 3 : std::max(hot - 1, 0); // ImGui answers an event within a few frames
+            hot = now - waitStart < wait || mouse_.isBehind() ? 3 : std::max(hot - 1, 0); // ImGui answers an event within a few frames
             drawOnce();
             latencies_.push_back(1000 * (glfwGetTime() - now));
             if (latencies_.size() > LATENCIES) latencies_.pop_front();
@@ -324,6 +331,7 @@ class Window
     {
         ImGui_ImplVulkan_NewFrame();
         ImGui_ImplGlfw_NewFrame();
+        mouse_.play(ImGui::GetIO());
         ImGui::NewFrame();
         state_.places.clear();
         takeNews();
@@ -397,6 +405,7 @@ class Window
     Frame frame_;
     std::unique_ptr<Presenter> presenter_;
     WindowState state_;
+    Mouse mouse_;
     CameraHands hands_;
     UndoList<SettingsPair> undo_;
     Pictures shown_;

@@ -1,5 +1,7 @@
 // What people expect of any window: presets, undo, dropped files, bookmarks, and that it remembers.
 
+#include <fmt/format.h>
+
 #include "tests/support/program.h"
 #include "tests/ui/window/window_fixture.h"
 #include "tests/ui/window/x_client.h"
@@ -40,6 +42,21 @@ TEST_F(WindowHabits, PresetsAndDropsSetWhatTheyNameAndUndoTakesItBack)
     ASSERT_TRUE(until(asks("method", "rgb-restir"), [&] { key("ctrl+y"); }));
     ASSERT_TRUE(comes(runs("method", "rgb-restir")));
     EXPECT_EQ(report()["settings"]["max-confidence"], 32768);
+    EXPECT_EQ(close(), 0);
+}
+
+// The mouse leaves before the window has drawn a frame.
+TEST_F(WindowHabits, AHastyClickCountsWhereItHappened)
+{
+    view();
+    ASSERT_TRUE(comes(runs("method", "pt")));
+    for (int i = 0; i < 6; ++i) {
+        const bool paused = i % 2 == 0;
+        const Json place = report()["places"]["pause"];
+        shell(fmt::format("xdotool mousemove {} {} mousedown 1 mouseup 1 mousemove 900 600", place[0].get<int>(),
+                          place[1].get<int>()));
+        EXPECT_TRUE(comes(asks("paused", paused)));
+    }
     EXPECT_EQ(close(), 0);
 }
 
