@@ -208,7 +208,7 @@ ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& d
         pipeline->bindings = std::move(reflection.bindings);
         pipeline->workgroupSize = reflection.workgroupSize;
         createLayout(*pipeline);
-        compile(*pipeline, spirv, reflection.constants);
+        compile(*pipeline, texel ? spirv : simplified(spirv, shader, reflection.constants), reflection.constants);
         return ComputePipeline(std::move(pipeline));
     });
 }

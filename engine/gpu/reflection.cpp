@@ -169,7 +169,7 @@ Inspector inspect(std::span<const uint32_t> spirv, const std::string& label)
 
 // The same shader with its constants set for good, so that all sizes in it are plain numbers.
 std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string& label,
-                             const std::map<uint32_t, uint32_t>& constants)
+                             const std::map<uint32_t, uint32_t>& constants, bool simplify)
 {
     std::unordered_map<uint32_t, std::vector<uint32_t>> values;
     for (const auto& [id, value] : constants) values[id] = {value};
@@ -180,6 +180,7 @@ std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string&
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+    if (simplify) optimizer.RegisterPerformancePasses();
     std::vector<uint32_t> frozen;
     if (!optimizer.Run(spirv.data(), spirv.size(), &frozen))
         throw Error("Shader \"{}\" is not valid SPIR-V: {}.", label, problem);
@@ -193,12 +194,18 @@ Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bo
 {
     Reflection result;
     inspect(spirv, label).readConstants(constants, result);
-    const std::vector<uint32_t> frozen = freeze(spirv, label, result.constants);
+    const std::vector<uint32_t> frozen = freeze(spirv, label, result.constants, false);
     const Inspector inspector = inspect(frozen, label);
     result.bindings = inspector.bindings(tablesAreTexelBuffers);
     inspector.readWorkgroupSize(result);
     result.sharedBytes = inspector.sharedBytes(frozen);
     return result;
+}
+
+std::vector<uint32_t> simplified(std::span<const uint32_t> spirv, const std::string& label,
+                                 const std::map<uint32_t, uint32_t>& constants)
+{
+    return freeze(spirv, label, constants, true);
 }
 
 } // namespace gpu

@@ -23,6 +23,10 @@ struct Reflection {
 Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers,
                    std::span<const Constant> constants);
 
+// The same shader with these values of its constants (by constant_id), inlined and without what they leave unused.
+std::vector<uint32_t> simplified(std::span<const uint32_t> spirv, const std::string& label,
+                                 const std::map<uint32_t, uint32_t>& constants);
+
 // The embedded shader `name`, or the file `name`.<flavor>.spv if that contains a slash. Throws Error when there is
 // none.
 std::vector<uint32_t> loadShader(const std::string& name, bool tablesAreTexelBuffers);
