@@ -145,7 +145,6 @@ TEST_F(Bsdf, HasTheValuesOfTheModel)
 
 TEST_F(Bsdf, SamplesWithTheDensityItClaims)
 {
-    if (isSlow(device())) GTEST_SKIP() << "SKIPPED ON SwiftShader: takes minutes there";
     constexpr int ROWS = 24, COLUMNS = 24, STEPS = 24; // bins of x and the azimuth about it: no lobe is at a pole
     constexpr uint32_t SAMPLES = 1 << 18;
     std::vector<dvec3> grid; // midpoints of a fine grid, bin by bin

@@ -105,7 +105,6 @@ class ToyPlantedErrors : public GpuTest, public testing::WithParamInterface<ToyE
 
 TEST_P(ToyPlantedErrors, AreFound)
 {
-    if (isSlow(device())) GTEST_SKIP() << "SKIPPED ON SwiftShader: slow";
     const ToyError& error = GetParam();
     PlantedShaders shaders(std::string("toy_") + error.name);
     for (const char* contract : {"integrand.glsl", "candidates.glsl", "toy.glsl", "toy.h"})

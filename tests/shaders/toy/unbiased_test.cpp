@@ -95,8 +95,6 @@ Plan plan(const passes::Estimator& estimator)
 
 TEST_P(ToyIntegrals, AreTheMeans)
 {
-    if (isSlow(device()) && GetParam().name() != "rgbrestirHybrid")
-        GTEST_SKIP() << "SKIPPED ON SwiftShader: rgb-restir with hybrid shifts stands for all";
     const Plan asked = plan(GetParam().estimator);
     const double level = 1e-3 / double(2 * rows().size() * asked.cases.size()); // two tests each, 1e-3 for all of them
     ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs);
@@ -114,7 +112,6 @@ using ToyWorld = GpuTest;
 // What leaving out the shifts of a resting camera changes: nothing.
 TEST_F(ToyWorld, NeedsNoShiftsAtRest)
 {
-    if (isSlow(device())) GTEST_SKIP() << "SKIPPED ON SwiftShader: slow";
     for (const Shift shift : {Shift::Replay, Shift::Hybrid}) { // reconnection moves not every path, not even home
         ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", allEstimators().back(), shift, 8);
         const ToyCase resting = {.reuse = Reuse::Both, .maxConfidence = 64};
