@@ -17,8 +17,8 @@
 
 #include <gtest/gtest.h>
 
-// SwiftShader takes five times as long as lavapipe to run a kernel, and up to minutes to compile it: 15 s for the stages of a
-// simple scene, minutes where all kinds of materials are in it.
+// SwiftShader takes five times as long as lavapipe to run a kernel, and up to minutes to compile it: 15 s for the
+// stages of a simple scene, minutes where all kinds of materials are in it.
 inline bool isSlow(const gpu::Device& device)
 {
     return device.adapter().name.find("SwiftShader") != std::string::npos;
@@ -76,6 +76,7 @@ class RendererFixture : public GpuTest
     {
         GpuTest::SetUp();
         if (!IsSkipped() && isSlow(device()))
-            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling takes minutes there; drivers_agreement_test compares its pictures";
+            GTEST_SKIP() << "SKIPPED ON SwiftShader: compiling takes minutes there; drivers_agreement_test compares "
+                            "its pictures";
     }
 };

@@ -58,7 +58,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
         const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
 
         const uint32_t lastFrame = frames - 1;
-        using View = std::pair<std::string, uint32_t>; // scene, frame
+        using View = std::pair<std::string, uint32_t>;  // scene, frame
         static std::map<View, PictureEstimates> traced; // the matrix asks again and again
         PictureEstimates& expected = traced[{scene, moves ? lastFrame : 0}];
         if (expected.tiles.tiles.empty()) {

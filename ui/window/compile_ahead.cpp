@@ -13,10 +13,10 @@ namespace ui
 namespace
 {
 
-constexpr int BACKGROUND = 10;           // nice: after the renderer, where both are on the CPU
+constexpr int BACKGROUND = 10; // nice: after the renderer, where both are on the CPU
 // After these there is time to tidy up: soon, and once more what the renderer's own first runs have left by then.
 constexpr std::chrono::seconds QUIET[] = {std::chrono::seconds(2), std::chrono::seconds(8)};
-constexpr uint64_t BUFFER_BYTES = 1024;  // larger than every uniform block
+constexpr uint64_t BUFFER_BYTES = 1024; // larger than every uniform block
 
 gpu::Usage usageOf(gpu::Binding::Kind kind)
 {
