@@ -99,9 +99,8 @@ class Window
             const double wait = hot > 0 ? 0.008 : IDLE_SECONDS;
             glfwWaitEventsTimeout(wait);
             const double now = glfwGetTime();
-            hot = now - waitStart < wait || mouse_.isBehind()
-                      ? 3
-                      : std::max(hot - 1, 0); // ImGui answers an event within a few frames
+            const bool awake = now - waitStart < wait || mouse_.isBehind();
+            hot = awake ? 3 : std::max(hot - 1, 0); // ImGui answers an event within a few frames
             drawOnce();
             latencies_.push_back(1000 * (glfwGetTime() - now));
             if (latencies_.size() > LATENCIES) latencies_.pop_front();
