@@ -107,6 +107,24 @@ TEST_F(Pipeline, WorkgroupSizeAndSharedMemoryFollowTheConstants)
     EXPECT_EQ(wide.sharedBytes, 16 * 2 * 16 + 3 * 4u);
 }
 
+// As SwiftShader gets them.
+TEST_F(Pipeline, SimplifiedShadersHaveNoConstantsLeftAndNothingUnused)
+{
+    const Words spirv = gpu::loadShader("spatial_trace", false);
+    const gpu::Constant reservoirs{"RESERVOIR_COUNT", 3u};
+    const gpu::Reflection before = gpu::reflect(spirv, "test", false, std::span(&reservoirs, 1));
+    ASSERT_GT(before.constants.size(), 20u);
+    const Words lean = gpu::simplified(spirv, "test", before.constants);
+    const gpu::Reflection after = gpu::reflect(lean, "test", false, {});
+    EXPECT_TRUE(after.constants.empty());
+    EXPECT_EQ(after.workgroupSize, before.workgroupSize);
+    std::vector<gpu::Binding> used = before.bindings; // random replay, the default, keeps no paths
+    EXPECT_EQ(std::erase_if(used, [](const gpu::Binding& b) { return b.name == "ReservoirPaths"; }), 1u);
+    ASSERT_EQ(after.bindings.size(), used.size());
+    for (size_t i = 0; i < used.size(); ++i) EXPECT_EQ(after.bindings[i], used[i]) << used[i].name;
+    EXPECT_THROW(gpu::simplified(Words{1, 2, 3}, "garbage", {}), Error);
+}
+
 TEST_F(Pipeline, ConstantsReachTheWorkgroupSizeOnTheDevice)
 {
     const gpu::Buffer sizes = create<uint32_t>("sizes", 4);
