@@ -188,7 +188,7 @@ void Renderer::tune()
 
 void Renderer::createStages()
 {
-    variant_ = makeVariant(sceneFeatures_, settings_, orthographic_);
+    variant_ = makeVariant(sceneFeatures_, settings_, orthographic_, scene_->stack());
     stats_.variant = describe(variant_);
     stats_.compileSeconds = 0;
     const auto stage = [&](const char* name) { return makeStage(name, variant_); };
@@ -215,7 +215,7 @@ void Renderer::recompile()
 
 std::vector<std::pair<std::string, Variant>> Renderer::stagesFor(const Settings& settings, bool cameraMoves) const
 {
-    const Variant variant = makeVariant(sceneFeatures_, settings, orthographic_);
+    const Variant variant = makeVariant(sceneFeatures_, settings, orthographic_, scene_->stack());
     std::vector<std::pair<std::string, Variant>> list = {{"primary", variant}, {"accumulate", variant}};
     if (settings.method == Method::Pt) {
         list.emplace_back("path_trace", variant);

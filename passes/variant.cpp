@@ -2,6 +2,7 @@
 
 #include "passes/estimator.h"
 
+#include <string_view>
 #include <type_traits>
 
 namespace passes
@@ -25,12 +26,15 @@ static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
               uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
               uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
 
-Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic)
+Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
+                    const scene::TraversalStack& stack)
 {
     Variant v;
     v.MAX_BOUNCES = settings.maxBounces;
     v.BOX_FILTER = settings.pixelFilter == PixelFilter::Box;
     v.ORTHOGRAPHIC = orthographic;
+    v.STACK_SIZE = stack.entries;
+    v.STACK_IN_REGISTERS = stack.inRegisters;
     if (settings.method != Method::Pt) {
         v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
         v.SHIFT_MAP = uint32_t(settings.shift);
@@ -57,6 +61,15 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
     v.HAS_SPECULAR_TEXTURE = features.specularTexture;
     v.HAS_MANY_MATERIALS = features.manyMaterials;
     return v;
+}
+
+Variant withAllFeatures(Variant variant)
+{
+#define ADD_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT)                                                                     \
+    if (std::string_view(#NAME).starts_with("HAS_")) variant.NAME = DEFAULT;
+    VARIANT_CONSTANTS(ADD_FEATURE)
+#undef ADD_FEATURE
+    return variant;
 }
 
 std::vector<gpu::Constant> constants(const Variant& variant)

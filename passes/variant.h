@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/gpu/gpu.h"
-#include "engine/scene/scene_tables.h"
+#include "engine/scene/gpu_scene.h"
 #include "passes/settings.h"
 #include "shaders/shared/variant.h"
 
@@ -23,7 +23,10 @@ struct Variant {
     bool operator==(const Variant&) const = default;
 };
 
-Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic);
+Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
+                    const scene::TraversalStack& stack);
+
+Variant withAllFeatures(Variant variant); // with everything that scenes can need compiled in
 
 std::vector<gpu::Constant> constants(const Variant& variant);
 

@@ -2,6 +2,8 @@
 
 #include "engine/base/fingerprint.h"
 
+#include <algorithm>
+
 namespace scene
 {
 
@@ -19,6 +21,17 @@ gpu::Buffer uploadTable(gpu::Device& device, const char* label, std::span<const 
 
 } // namespace
 
+TraversalStack traversalStack(const gpu::Adapter& adapter, const BvhStats& bvh)
+{
+    constexpr uint32_t STEP = 4;            // trees of about one depth share pipelines
+    constexpr uint32_t MOST_REGISTERS = 16; // all of them move at each visit
+    const uint32_t entries = std::max((bvh.depth + STEP - 1) / STEP * STEP, STEP);
+    // Mesa's CPU driver, but not SwiftShader, which has no texel buffers to speak of: 1.25 and 0.65 times the rays per
+    // second of an array (tests/bench/LOG.md). Not measured on graphics cards.
+    const bool masked = adapter.kind == "cpu" && adapter.limits.tablesAreTexelBuffers;
+    return {.entries = entries, .inRegisters = masked && entries <= MOST_REGISTERS};
+}
+
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
     : nodes_(uploadTable(device, "Nodes", tables.bvh.nodes)),
       triangles_(uploadTable(device, "Triangles", tables.bvh.triangles)),
@@ -26,7 +39,8 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
       texels_(uploadTable(device, "Texels", tables.texels)),
       sceneData_(uploadTable(device, "SceneData", tables.sceneData)),
       uniform_(
-          device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform}))
+          device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform})),
+      stack_(traversalStack(device.adapter(), tables.bvh.stats))
 {
     device.queue().writeValue(uniform_, tables.uniform);
     for (const std::vector<glm::uvec4>* rows :

@@ -32,7 +32,9 @@
     X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")                                                    \
     X(24, uint, RESERVOIR_COUNT, 1u, "reservoirs of a pixel")                                                          \
     X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")                                 \
-    X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")
+    X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")                     \
+    X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
+    X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")
 
 SHARED_BEGIN
 

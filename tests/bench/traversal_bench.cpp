@@ -20,7 +20,7 @@
 #include "engine/base/files.h"
 #include "engine/gpu/gpu.h"
 #include "engine/gpu/shader.h"
-#include "engine/scene/bvh.h"
+#include "engine/scene/gpu_scene.h"
 
 #include "shaders/shared/types.h"
 #include "tests/bench/embree_apis.h"
@@ -110,7 +110,8 @@ class Kernels
   public:
     Kernels(gpu::Device& device, const scene::Bvh& bvh, const std::vector<std::string>& trees)
         : device_(device), nodes_(upload("nodes", std::as_bytes(std::span(bvh.nodes)), gpu::Usage::Table)),
-          triangles_(upload("triangles", std::as_bytes(std::span(bvh.triangles)), gpu::Usage::Table))
+          triangles_(upload("triangles", std::as_bytes(std::span(bvh.triangles)), gpu::Usage::Table)),
+          stack_(scene::traversalStack(device.adapter(), bvh.stats))
     {
         for (const std::string& tree : trees)
             for (const uint32_t any : {0u, 1u}) pipelines_.push_back(compile(tree, any));
@@ -160,13 +161,18 @@ class Kernels
         const std::string flavored = file.string() + (texel ? ".texel.spv" : ".storage.spv");
         files::writeAtomically(flavored, std::as_bytes(std::span(spirv)));
         gpu::ComputePipeline pipeline =
-            device_.createComputePipeline({anyHit ? "any hit" : "closest hit", file.string(), {{"ANY_HIT", anyHit}}});
+            device_.createComputePipeline({anyHit ? "any hit" : "closest hit",
+                                           file.string(),
+                                           {{"ANY_HIT", anyHit},
+                                            {"STACK_SIZE", stack_.entries},
+                                            {"STACK_IN_REGISTERS", stack_.inRegisters ? 1u : 0u}}});
         std::filesystem::remove(flavored);
         return pipeline;
     }
 
     gpu::Device& device_;
     gpu::Buffer nodes_, triangles_;
+    scene::TraversalStack stack_;
     std::vector<gpu::ComputePipeline> pipelines_; // per tree: closest hit, any hit
 };
 

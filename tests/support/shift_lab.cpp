@@ -49,7 +49,7 @@ ShiftLab::ShiftLab(gpu::Device& device, const std::string& kernels, passes::Shif
     settings.method = passes::Method::RestirPt;
     settings.shift = shift;
     settings.maxBounces = MAX_BOUNCES;
-    variant_ = passes::makeVariant(tables.features, settings, false);
+    variant_ = passes::makeVariant(tables.features, settings, false, scene_->stack());
 
     device.queue().writeValue(frame_, frameOf(scene.cameras.at(0), tables.lengthScale));
     run("primary", {{"Surfaces", &surfaces_}}, {SIZE, SIZE});

@@ -153,7 +153,7 @@ void printScene(const Json& scene, const passes::Settings& settings)
         print(fmt::format("Reservoirs: {:.0f} bytes per pixel and reservoir, for this frame's and the previous one's",
                           scene["reservoir_bytes_per_pixel"].get<double>()));
     for (const bool in : {true, false}) {
-        print(in ? "Compiled in:" : "Left out, because neither the scene nor the settings need it:");
+        print(in ? "Compiled in:" : "Left out, because neither scene, settings nor device need it:");
         for (const auto& [name, fact] : scene["variant"].items())
             if ((fact["value"] != "off") == in)
                 print(fmt::format("    {:<34}{}{}", name, fact["meaning"].get<std::string>(),

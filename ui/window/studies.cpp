@@ -82,15 +82,8 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
         if (order.studies.correlation || order.studies.floor) add(settings);
     }
     if (order.studies.savings > 0) {
-        for (const auto& [name, needed] : like.stagesFor(settingsOf(order, A), true)) {
-            passes::Variant everything; // unless told otherwise
-            everything.MAX_BOUNCES = needed.MAX_BOUNCES;
-            everything.BOX_FILTER = needed.BOX_FILTER;
-            everything.ORTHOGRAPHIC = needed.ORTHOGRAPHIC;
-            everything.RESERVOIR_COUNT = needed.RESERVOIR_COUNT;
-            everything.SHIFT_MAP = needed.SHIFT_MAP;
-            stages.emplace_back(name, everything);
-        }
+        for (const auto& [name, needed] : like.stagesFor(settingsOf(order, A), true))
+            stages.emplace_back(name, passes::withAllFeatures(needed));
     }
     return stages;
 }

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "engine/scene/bvh.h"
+#include "engine/scene/gpu_scene.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/ray_sets.h"
 
@@ -38,11 +39,14 @@ struct Mesh {
 class Intersect : public GpuTest
 {
   protected:
+    std::optional<scene::TraversalStack> forcedStack; // instead of the one that fits device and tree
+
     std::vector<Hit> trace(const Mesh& mesh, const std::vector<TestRay>& rays)
     {
         const scene::Bvh bvh = scene::buildBvh(
             {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = mesh.needsAlphaTest},
             device().limits().tableBytes);
+        const scene::TraversalStack stack = forcedStack.value_or(scene::traversalStack(device().adapter(), bvh.stats));
         const gpu::Buffer nodes = upload("nodes", bvh.nodes, gpu::Usage::Table);
         const gpu::Buffer triangles = upload("triangles", bvh.triangles, gpu::Usage::Table);
         const gpu::Buffer rayBuffer = upload("rays", rays);
@@ -51,7 +55,9 @@ class Intersect : public GpuTest
         const gpu::Buffer solid = upload("solid", solidWords);
         const gpu::Buffer hits = create<Hit>("hits", rays.size());
         run({.shader = TEST_SPIRV_DIR "/intersect_test",
-             .constants = {{"HAS_ALPHA", mesh.needsAlphaTest.empty() ? 0u : 1u}},
+             .constants = {{"HAS_ALPHA", mesh.needsAlphaTest.empty() ? 0u : 1u},
+                           {"STACK_SIZE", stack.entries},
+                           {"STACK_IN_REGISTERS", stack.inRegisters ? 1u : 0u}},
              .buffers = {{"Nodes", &nodes},
                          {"Triangles", &triangles},
                          {"Rays", &rayBuffer},

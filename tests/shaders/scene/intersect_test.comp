@@ -7,6 +7,8 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const bool HAS_ALPHA = false;
 layout(constant_id = 1) const bool TRACE_OCCLUDED = true;
+layout(constant_id = 2) const uint STACK_SIZE = 32u;
+layout(constant_id = 3) const bool STACK_IN_REGISTERS = false;
 
 TABLE(SET_SCENE, 0, Nodes);
 TABLE(SET_SCENE, 1, Triangles);

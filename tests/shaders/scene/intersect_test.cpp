@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -141,6 +142,42 @@ TEST_F(IntersectAgreement, WithEmbreeInSponza)
 
 // --------------------------------------------------------------------------------------------------------------
 // promises
+
+// A deep tree of a chain of triangles, each half as large and half as far, and a wide one: with the stack that fits, in
+// registers and in an array, and with the largest.
+TEST_F(Intersect, FindsTheSameWithEveryStack)
+{
+    Mesh chain;
+    std::vector<TestRay> rays;
+    for (int i = 0; i < 120; ++i) {
+        const float s = std::ldexp(1.0f, 40 - i);
+        chain.add({s, 0, 0}, {s, s, 0}, {s, 0, s});
+        rays.push_back({{1.5f * s, 0.25f * s, 0.25f * s}, FAR, {-1, 0, 0}});
+        rays.push_back({{0.75f * s, 0.25f * s, 0.25f * s}, FAR, {1, 0, 0}});
+    }
+    const scene::Scene hall = scene::makeHall();
+    const EmbreeScene embree(hall.positions, hall.triangles);
+    const RaySets sets = makeRaySets(hall, embree, 64);
+    const Mesh wide = {.positions = hall.positions, .triangles = hall.triangles};
+
+    for (const auto& [mesh, all] :
+         {std::pair(&std::as_const(chain), &std::as_const(rays)), std::pair(&wide, &sets.bounce)}) {
+        const uint32_t depth =
+            scene::buildBvh({.positions = mesh->positions, .triangles = mesh->triangles}, device().limits().tableBytes)
+                .stats.depth;
+        forcedStack = scene::TraversalStack{shared::BVH_STACK_SIZE, false};
+        const std::vector<Hit> expected = trace(*mesh, *all);
+        EXPECT_GT(std::ranges::count_if(expected, &Hit::isHit), std::ptrdiff_t(all->size() / 2));
+        for (const bool inRegisters : {false, true}) {
+            forcedStack = scene::TraversalStack{depth, inRegisters};
+            const std::vector<Hit> hits = trace(*mesh, *all);
+            size_t differing = 0;
+            for (size_t i = 0; i < hits.size(); ++i)
+                differing += std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 ? 1 : 0;
+            EXPECT_EQ(differing, 0u) << depth << " entries, in registers: " << inRegisters;
+        }
+    }
+}
 
 TEST_F(Intersect, OfNothingIsNothing)
 {

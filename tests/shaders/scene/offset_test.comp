@@ -6,6 +6,8 @@
 layout(local_size_x = 64) in;
 
 const bool HAS_ALPHA = false;
+const uint STACK_SIZE = 32u;
+const bool STACK_IN_REGISTERS = false;
 
 TABLE(SET_SCENE, 0, Nodes);
 TABLE(SET_SCENE, 1, Triangles);
