@@ -189,6 +189,7 @@ void Renderer::tune()
 void Renderer::createStages()
 {
     variant_ = makeVariant(sceneFeatures_, settings_, orthographic_, scene_->stack());
+    hitsFrom_.reset();
     stats_.variant = describe(variant_);
     stats_.compileSeconds = 0;
     const auto stage = [&](const char* name) { return makeStage(name, variant_); };
@@ -250,13 +251,19 @@ std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Varian
     return stage;
 }
 
+// Is each camera ray of this frame the same as from there?
+bool Renderer::seesTheSame(const std::optional<shared::CameraUniform>& from) const
+{
+    using Bits = std::array<uint32_t, sizeof(shared::CameraUniform) / sizeof(uint32_t)>;
+    return featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center && from &&
+           std::bit_cast<Bits>(frame_.camera) == std::bit_cast<Bits>(*from);
+}
+
 // Compiled when first needed. While the camera rests each camera ray sees the same point again: shifts between the two
 // frames are identities, and left out.
 const Stage& Renderer::temporal()
 {
-    using Bits = std::array<uint32_t, sizeof(shared::CameraUniform) / sizeof(uint32_t)>;
-    const bool resting = featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center &&
-                         std::bit_cast<Bits>(frame_.camera) == std::bit_cast<Bits>(frame_.previousCamera);
+    const bool resting = seesTheSame(frame_.previousCamera);
     std::unique_ptr<Stage>& stage = resting ? temporalResting_ : temporalMoving_;
     if (!stage) {
         Variant variant = variant_;
@@ -290,7 +297,7 @@ void Renderer::apply(const Settings& settings)
 void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
 {
     const gpu::Threads pixels = {settings_.width, pictureHeight()};
-    primary_->encode(encoder, pixels);
+    if (!hitsKnown_) primary_->encode(encoder, pixels);
     if (pathTrace_) pathTrace_->encode(encoder, pixels);
     if (canonical_) canonical_->encode(encoder, pixels);
     if (settings_.temporal && canonical_ && historyFrames_ > 0) temporal().encode(encoder, pixels);
@@ -302,7 +309,10 @@ void Renderer::encodeFrame(gpu::CommandEncoder& encoder)
 void Renderer::renderFrame()
 {
     frame_.frame = uint32_t(frameCount_);
-    frame_.slice = uint32_t(frameCount_ & 1);
+    frame_.previousSlice = frame_.slice;
+    hitsKnown_ = seesTheSame(hitsFrom_) && !variant_.HAS_ALPHA; // which lets rays pass by chance
+    if (!hitsKnown_) frame_.slice = 1 - frame_.slice;
+    hitsFrom_ = frame_.camera;
     device_.queue().writeValue(frameUniform_, frame_);
     gpu::CommandEncoder encoder = device_.createCommandEncoder("frame");
     if (frameCount_ == 0) {

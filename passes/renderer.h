@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -106,6 +107,7 @@ class Renderer
     void createBuffers();
     void createStages();
     const Stage& temporal();
+    bool seesTheSame(const std::optional<shared::CameraUniform>& from) const;
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);
     void collectTimings();
@@ -123,6 +125,8 @@ class Renderer
     Variant variant_;
     RenderStats stats_;
     shared::FrameUniform frame_ = {};
+    std::optional<shared::CameraUniform> hitsFrom_; // the camera that the frame's half of surfaces_ was traced from
+    bool hitsKnown_ = false;                        // ahead of the frame: primary is left out
     uint64_t frameCount_ = 0, timedFrames_ = 0;
     uint64_t historyFrames_ = 0;                 // frames of reservoirs that the next frame may reuse
     std::map<std::string, double> milliseconds_; // summed over timedFrames_

@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 
+#include <algorithm>
+
 namespace passes
 {
 
@@ -21,8 +23,11 @@ RendererState Renderer::save()
                         .historyFrames = historyFrames_,
                         .camera = frame_.camera,
                         .previousCamera = frame_.previousCamera};
-    for (const gpu::Buffer* buffer : lastingBuffers())
-        state.buffers.emplace_back(buffer->label(), device_.queue().read(*buffer));
+    for (const gpu::Buffer* buffer : lastingBuffers()) {
+        std::vector<std::byte> bytes = device_.queue().read(*buffer);
+        if (buffer == &surfaces_ && frame_.slice == 1) std::ranges::rotate(bytes, bytes.begin() + bytes.size() / 2);
+        state.buffers.emplace_back(buffer->label(), std::move(bytes));
+    }
     return state;
 }
 
@@ -44,6 +49,9 @@ void Renderer::restore(const RendererState& state)
     historyFrames_ = state.historyFrames;
     frame_.camera = state.camera;
     frame_.previousCamera = state.previousCamera;
+    frame_.slice = 0; // save() has put the last frame's half of surfaces_ there
+    hitsFrom_.reset();
+    if (frameCount_ > 0 && std::ranges::find(buffers, &surfaces_) != buffers.end()) hitsFrom_ = state.previousCamera;
 }
 
 } // namespace passes

@@ -10,7 +10,7 @@ TABLE(SET_PASS, 0, Surfaces);
 
 uvec4 seenBy(uint pixel, bool previous)
 {
-    uint slice = previous ? 1u - frame.slice : frame.slice;
+    uint slice = previous ? frame.previousSlice : frame.slice;
     return FETCH(Surfaces, slice * frame.width * frame.height + pixel);
 }
 
