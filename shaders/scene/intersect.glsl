@@ -188,7 +188,8 @@ const uint NODES_BEFORE_TRIANGLES = 3u;
 // Depth-first: the nearest first for the nearest hit; for any hit the farthest, as a ray begins along its own surface,
 // where it meets boxes but no triangles. A group is the rest of one node's child nodes: those to visit in bits 0..7, in
 // that order; above them what the slot adds to; 0: none. Visits nodes until there are triangles, then tests them all, so that
-// lanes in lockstep test theirs together.
+// lanes in lockstep test theirs together. A triangle whose alpha must be asked interrupts that, and the search goes on where it
+// was: whatever stands inside a loop is paid at each of its rounds, asked or not.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
 {
     uint stack[STACK_SIZE]; // of groups: in registers with the top at 0, else at depth - 1
@@ -200,84 +201,104 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
     uint order = any ? r.signs ^ 7u : r.signs;
     uint group = 1u << order; // slot 0 of base 0: the root
-    bool more = true;
     bool blocked = false;
+    bool more = true;
+    // Of the node whose triangles are to be tested.
+    uint masks = 0u;
+    uint firstRecord = 0u;
+    uint triangles = 0u;
+    // A hit if its alpha passes.
+    bool asks = false;
+    Hit asking = Hit(0u, vec2(0.0), 0.0);
     do {
-        // Of the node whose triangles are to be tested.
-        uint masks = 0u;
-        uint firstRecord = 0u;
-        uint triangles = 0u;
-        uint visits = 0u;
-        LOOP_BEGIN(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
-            bool walks = triangles == 0u; // always; what leaves this loop must be made from what was (see the top)
-            ++visits;
-            uint slot = uint(findLSB(group)) ^ order;
-            uint node = BVH_NODE_STRIDE * ((group >> 8) + slot);
-            uint rest = group & (group - 1u);
-            bool remains = (rest & 255u) != 0u;
-            if (!STACK_IN_REGISTERS) {
-                stack[depth] = rest;
-                depth += remains ? 1u : 0u;
-            }
-
-            uvec4 links = FETCH(Nodes, node + 1u);
-            uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
-                                     FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
-            masks = walks ? links.x : masks;
-            firstRecord = walks ? links.z : firstRecord;
-            triangles |= hits & 0xffffffu;
-            group = links.y | inOrder(hits >> 24, order);
-
-            bool enters = (group & 255u) != 0u;
-            if (STACK_IN_REGISTERS) {
-                group = enters ? group : remains ? rest : stack[0];
-                bool pushes = enters && remains;
-                bool pops = !enters && !remains;
-                uint above = rest; // the entry before i, before it moved
-                for (uint i = 0u; i < STACK_SIZE; ++i) {
-                    uint entry = stack[i];
-                    uint below = i + 1u < STACK_SIZE ? stack[i + 1u] : 0u;
-                    stack[i] = pushes ? above : pops ? below : entry;
-                    above = entry;
+        do {
+            uint visits = 0u;
+            LOOP_BEGIN(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+                // Always, but after an alpha test: then there may be nothing to visit.
+                bool walks = !HAS_ALPHA || (triangles == 0u && (group & 255u) != 0u);
+                bool isFirst = triangles == 0u; // always; what leaves this loop must be made from what was (see the top)
+                ++visits;
+                uint slot = uint(findLSB(group)) ^ order;
+                uint node = walks ? BVH_NODE_STRIDE * ((group >> 8) + slot) : 0u;
+                uint rest = group & (group - 1u);
+                bool remains = (rest & 255u) != 0u;
+                if (!STACK_IN_REGISTERS) {
+                    stack[depth] = rest;
+                    depth += walks && remains ? 1u : 0u;
                 }
-            } else {
-                bool pops = !enters && depth != 0u;
-                depth -= pops ? 1u : 0u;
-                uint top = stack[depth];
-                group = pops ? top : group;
-            }
-        LOOP_END(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
 
-        LOOP_BEGIN(triangles != 0u)
-            bool valid = triangles != 0u;
-            uint earlier = masks & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
-            uint record = valid ? BVH_TRIANGLE_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
-            triangles &= triangles - 1u;
-            uvec4 v0 = FETCH(Triangles, record);
-            vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
-            vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
-            float t;
-            vec2 barycentric;
-            bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
-            uint triangle = v0.w & ~BVH_ALPHA_FLAG;
-            met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
-            if (HAS_ALPHA) {
-                // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiles one here, and rays miss triangles
-                // (tests/images/variants_test.cpp).
-                bool asks = met && (v0.w & BVH_ALPHA_FLAG) != 0u;
-                bool passes = alphaPasses(asks ? triangle : 0u, barycentric, alphaSeed);
-                met = met && (passes || !asks);
-            }
+                uvec4 links = FETCH(Nodes, node + 1u);
+                uint hits = meetChildren(r, hit.t, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
+                                         FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
+                masks = isFirst ? links.x : masks;
+                firstRecord = isFirst ? links.z : firstRecord;
+                triangles |= walks ? hits & 0xffffffu : 0u;
+                uint children = links.y | inOrder(hits >> 24, order);
+
+                bool enters = (children & 255u) != 0u;
+                uint next;
+                if (STACK_IN_REGISTERS) {
+                    next = enters ? children : remains ? rest : stack[0];
+                    bool pushes = walks && enters && remains;
+                    bool pops = walks && !enters && !remains;
+                    uint above = rest; // the entry before i, before it moved
+                    for (uint i = 0u; i < STACK_SIZE; ++i) {
+                        uint entry = stack[i];
+                        uint below = i + 1u < STACK_SIZE ? stack[i + 1u] : 0u;
+                        stack[i] = pushes ? above : pops ? below : entry;
+                        above = entry;
+                    }
+                } else {
+                    bool pops = walks && !enters && depth != 0u;
+                    depth -= pops ? 1u : 0u;
+                    uint top = stack[depth];
+                    next = pops ? top : children;
+                }
+                group = walks ? next : group;
+            LOOP_END(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+
+            LOOP_BEGIN(triangles != 0u && !asks)
+                bool valid = triangles != 0u;
+                uint earlier = masks & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
+                uint record = valid ? BVH_TRIANGLE_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
+                triangles &= triangles - 1u;
+                uvec4 v0 = FETCH(Triangles, record);
+                vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
+                vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
+                float t;
+                vec2 barycentric;
+                bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
+                uint triangle = v0.w & ~BVH_ALPHA_FLAG;
+                met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
+                if (HAS_ALPHA) {
+                    bool isFlagged = met && (v0.w & BVH_ALPHA_FLAG) != 0u;
+                    if (isFlagged) asking = Hit(triangle, barycentric, t);
+                    asks = asks || isFlagged;
+                    met = met && !isFlagged;
+                }
+                if (any) {
+                    blocked = blocked || met;
+                    triangles = met ? 0u : triangles;
+                } else if (met) {
+                    hit = Hit(triangle, barycentric, t);
+                }
+            LOOP_END(triangles != 0u && !asks)
+
+            more = (triangles != 0u || (group & 255u) != 0u) && !blocked;
+        } while (more && !asks);
+        if (HAS_ALPHA) {
+            // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiled one here, and rays missed triangles
+            // (tests/images/variants_test.cpp).
+            bool passes = alphaPasses(asking.triangle, asking.barycentric, alphaSeed) && asks;
+            asks = false;
             if (any) {
-                blocked = blocked || met;
-                triangles = met ? 0u : triangles;
-            } else if (met) {
-                hit = Hit(triangle, barycentric, t);
+                blocked = blocked || passes;
+                more = more && !blocked;
+            } else if (passes) {
+                hit = asking;
             }
-        LOOP_END(triangles != 0u)
-
-        more = (group & 255u) != 0u && !blocked;
-    } while (more);
+        }
+    } while (HAS_ALPHA && more);
     if (blocked) hit.triangle = 0u;
     hit.t = max(hit.t + r.advance, 0.0);
     return hit;
