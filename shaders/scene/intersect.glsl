@@ -210,8 +210,8 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     // A hit if its alpha passes.
     bool asks = false;
     Hit asking = Hit(0u, vec2(0.0), 0.0);
-    do {
-        do {
+    LOOP_BEGIN(more)
+        LOOP_BEGIN(more && !asks)
             uint visits = 0u;
             LOOP_BEGIN(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
                 // Always, but after an alpha test: then there may be nothing to visit.
@@ -285,7 +285,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             LOOP_END(triangles != 0u && !asks)
 
             more = (triangles != 0u || (group & 255u) != 0u) && !blocked;
-        } while (more && !asks);
+        LOOP_END(more && !asks)
         if (HAS_ALPHA) {
             // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiled one here, and rays missed triangles
             // (tests/images/variants_test.cpp).
@@ -298,7 +298,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
                 hit = asking;
             }
         }
-    } while (HAS_ALPHA && more);
+    LOOP_END(HAS_ALPHA && more)
     if (blocked) hit.triangle = 0u;
     hit.t = max(hit.t + r.advance, 0.0);
     return hit;

@@ -17,7 +17,8 @@ uint bits(uint x) { return x; }
 void main()
 {
     uint element = gl_LocalInvocationIndex;
-    uint next = element * uint(words.length()) / 2u;
+#define COUNT(MEMBER) +1u
+    uint next = element * (0u FRAME_MEMBERS(COUNT) SCENE_MEMBERS(COUNT));
 #define WRITE_FRAME(MEMBER) words[next++] = bits(frames[element].MEMBER);
 #define WRITE_SCENE(MEMBER) words[next++] = bits(scenes[element].MEMBER);
     FRAME_MEMBERS(WRITE_FRAME)
