@@ -25,7 +25,8 @@ RendererState Renderer::save()
                         .previousCamera = frame_.previousCamera};
     for (const gpu::Buffer* buffer : lastingBuffers()) {
         std::vector<std::byte> bytes = device_.queue().read(*buffer);
-        if (buffer == &surfaces_ && frame_.slice == 1) std::ranges::rotate(bytes, bytes.begin() + bytes.size() / 2);
+        if (buffer == &surfaces_ && frame_.slice == 1) // the last frame's half goes first
+            std::rotate(bytes.begin(), bytes.begin() + std::ptrdiff_t(bytes.size() / 2), bytes.end());
         state.buffers.emplace_back(buffer->label(), std::move(bytes));
     }
     return state;

@@ -20,6 +20,7 @@ struct Hit {
     uint32_t triangle() const { return packed & 0x7fffffffu; }
     bool isHit() const { return triangle() != NO_HIT; }
     bool occluded() const { return packed >> 31 != 0; }
+    bool operator==(const Hit&) const = default;
 };
 
 struct Mesh {

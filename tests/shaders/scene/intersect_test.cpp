@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -172,8 +171,7 @@ TEST_F(Intersect, FindsTheSameWithEveryStack)
             forcedStack = scene::TraversalStack{depth, inRegisters};
             const std::vector<Hit> hits = trace(*mesh, *all);
             size_t differing = 0;
-            for (size_t i = 0; i < hits.size(); ++i)
-                differing += std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 ? 1 : 0;
+            for (size_t i = 0; i < hits.size(); ++i) differing += hits[i] != expected[i] ? 1 : 0;
             EXPECT_EQ(differing, 0u) << depth << " entries, in registers: " << inRegisters;
         }
     }
