@@ -2,6 +2,7 @@
 #ifndef SHADERS_SCENE_TEXTURE_GLSL
 #define SHADERS_SCENE_TEXTURE_GLSL
 
+#include "lib/srgb.glsl"
 #include "scene/bindings.glsl"
 
 int wrapTexel(int i, int size, uint mode)
@@ -11,13 +12,6 @@ int wrapTexel(int i, int size, uint mode)
     int j = i - period * int(floor(float(i) / float(period)));
     j = j < 0 ? j + period : (j >= period ? j - period : j); // the division may round across a border
     return j < size ? j : 2 * size - 1 - j;
-}
-
-vec3 linearFromSrgb(vec3 c)
-{
-    vec3 low = c / 12.92;
-    vec3 high = pow((c + 0.055) / 1.055, vec3(2.4));
-    return mix(high, low, lessThanEqual(c, vec3(0.04045)));
 }
 
 vec4 fetchTexel(uint firstBlock, int width, ivec2 p, bool srgb)
