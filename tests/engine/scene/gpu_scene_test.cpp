@@ -2,6 +2,8 @@
 
 #include "engine/scene/gpu_scene.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace
