@@ -38,7 +38,7 @@ Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, u
     VkFormatProperties format = {};
     vkGetPhysicalDeviceFormatProperties(device, TABLE_FORMAT, &format);
     const bool texel = limits.maxTexelBufferElements >= ENOUGH_TEXELS &&
-                       (format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT) != 0;
+                       (format.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT) != 0;
 
     VkPhysicalDeviceMemoryProperties memory = {};
     vkGetPhysicalDeviceMemoryProperties(device, &memory);

@@ -21,7 +21,7 @@ VkBufferUsageFlags vulkanUsage(const DeviceState& device, Usage usage)
     if (has(usage, Usage::Storage)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     if (has(usage, Usage::Uniform)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     if (has(usage, Usage::Table))
-        flags |= device.physical.adapter.limits.tablesAreTexelBuffers ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
+        flags |= device.physical.adapter.limits.tablesAreTexelBuffers ? VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT
                                                                       : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     return flags;
 }

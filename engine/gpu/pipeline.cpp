@@ -171,7 +171,7 @@ VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
 {
     if (kind == Binding::Kind::Uniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     if (kind == Binding::Kind::Table && physical.adapter.limits.tablesAreTexelBuffers)
-        return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+        return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
     return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 

@@ -41,6 +41,14 @@ struct Inspector {
         return {list, count};
     }
 
+    // A table as a storage texel buffer that is only read (lib/table.glsl).
+    bool isTableImage(const spvc_reflected_resource& image) const
+    {
+        const spvc_type type = spvc_compiler_get_type_handle(compiler, image.type_id);
+        return spvc_type_get_image_dimension(type) == SpvDimBuffer &&
+               spvc_compiler_has_decoration(compiler, image.id, SpvDecorationNonWritable);
+    }
+
     // A block that is a table stored in a storage buffer: read-only, one member, named after the block
     // (lib/table.glsl).
     bool isTableBlock(const spvc_reflected_resource& block) const
@@ -72,15 +80,17 @@ struct Inspector {
         check(spvc_compiler_create_shader_resources(compiler, &all));
         for (const auto& [type, what] : {std::pair(SPVC_RESOURCE_TYPE_PUSH_CONSTANT, "a push constant block"),
                                          std::pair(SPVC_RESOURCE_TYPE_STORAGE_IMAGE, "a storage image"),
+                                         std::pair(SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, "an image"),
                                          std::pair(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, "a sampled image")})
-            if (const auto found = resources(all, type); !found.empty())
-                throw Error("Shader \"{}\" declares {} (\"{}\"), which this program does not use.", label, what,
-                            found[0].name);
+            for (const auto& r : resources(all, type))
+                if (type != SPVC_RESOURCE_TYPE_STORAGE_IMAGE || !isTableImage(r))
+                    throw Error("Shader \"{}\" declares {} (\"{}\"), which this program does not use.", label, what,
+                                r.name);
 
         std::vector<Binding> found;
         for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_UNIFORM_BUFFER))
             found.push_back(binding(r, Binding::Kind::Uniform));
-        for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_SEPARATE_IMAGE))
+        for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_STORAGE_IMAGE))
             found.push_back(binding(r, Binding::Kind::Table));
         for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_STORAGE_BUFFER)) {
             found.push_back(binding(r, Binding::Kind::Storage));

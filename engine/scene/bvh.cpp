@@ -54,7 +54,7 @@ bool isUsable(const Corners& v)
 struct BuildNode {
     std::array<BuildNode*, 2> children = {nullptr, nullptr};
     std::array<Box, 2> childBoxes;
-    uint32_t triangle = NONE;
+    uint32_t pair = NONE;
 };
 static_assert(std::is_trivially_destructible_v<BuildNode>); // Embree's arena frees them unseen
 
@@ -65,6 +65,7 @@ BuildNode* newNode(RTCThreadLocalAllocator allocator)
 
 struct BuildContext {
     const BvhInput* input = nullptr;
+    std::span<const TrianglePair> pairs;
     std::mutex mutex; // of progress: Embree's threads report
     double reported = 0;
     char started = 0, ended = 0; // places that Callback and its build name to the thread sanitizer
@@ -115,25 +116,30 @@ RTCBounds boundsOf(const Box& box)
     return {box.lower.x, box.lower.y, box.lower.z, 0, box.upper.x, box.upper.y, box.upper.z, 0};
 }
 
-// The boxes of the triangle's parts on either side of a plane, within the box it has already been cut to.
+// The boxes of the pair's parts on either side of a plane, within the box it has already been cut to.
 void splitPrimitive(const RTCBuildPrimitive* primitive, unsigned axisIndex, float position, RTCBounds* left,
                     RTCBounds* right, void* context)
 {
     const Callback callback(context);
     const int axis = int(axisIndex);
-    const Corners v = cornersOf(*callback.build().input, primitive->primID);
+    const BuildContext& build = callback.build();
+    const TrianglePair& pair = build.pairs[primitive->primID];
     std::array<Box, 2> parts;
     const auto extend = [&](int side, const glm::vec3& point) { parts[size_t(side)].extend({point, point}); };
-    for (size_t i = 0; i < 3; ++i) {
-        const glm::vec3 a = v[i];
-        const glm::vec3 b = v[(i + 1) % 3];
-        if (a[axis] <= position) extend(0, a);
-        if (a[axis] >= position) extend(1, a);
-        if ((a[axis] < position && b[axis] > position) || (a[axis] > position && b[axis] < position)) {
-            glm::vec3 cut = glm::mix(a, b, (position - a[axis]) / (b[axis] - a[axis]));
-            cut[axis] = position;
-            extend(0, cut);
-            extend(1, cut);
+    for (const uint32_t triangle : {pair.first, pair.second}) {
+        if (triangle == NONE) continue;
+        const Corners v = cornersOf(*build.input, triangle);
+        for (size_t i = 0; i < 3; ++i) {
+            const glm::vec3 a = v[i];
+            const glm::vec3 b = v[(i + 1) % 3];
+            if (a[axis] <= position) extend(0, a);
+            if (a[axis] >= position) extend(1, a);
+            if ((a[axis] < position && b[axis] > position) || (a[axis] > position && b[axis] < position)) {
+                glm::vec3 cut = glm::mix(a, b, (position - a[axis]) / (b[axis] - a[axis]));
+                cut[axis] = position;
+                extend(0, cut);
+                extend(1, cut);
+            }
         }
     }
     const Box whole = {{primitive->lower_x, primitive->lower_y, primitive->lower_z},
@@ -158,16 +164,26 @@ bool reportProgress(void* context, double fraction)
     return true;
 }
 
-std::vector<RTCBuildPrimitive> usablePrimitives(const BvhInput& input)
+std::vector<uint32_t> usableTriangles(const BvhInput& input)
+{
+    std::vector<uint32_t> usable;
+    usable.reserve(input.triangles.size());
+    for (uint32_t i = 0; i < input.triangles.size(); ++i)
+        if (isUsable(cornersOf(input, i))) usable.push_back(i);
+    return usable;
+}
+
+std::vector<RTCBuildPrimitive> primitivesOf(const BvhInput& input, std::span<const TrianglePair> pairs)
 {
     std::vector<RTCBuildPrimitive> primitives;
-    primitives.reserve(input.triangles.size());
-    for (uint32_t i = 0; i < input.triangles.size(); ++i) {
-        const Corners v = cornersOf(input, i);
-        if (!isUsable(v)) continue;
-        const glm::vec3 lower = glm::min(v[0], glm::min(v[1], v[2]));
-        const glm::vec3 upper = glm::max(v[0], glm::max(v[1], v[2]));
-        primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, i});
+    primitives.reserve(pairs.size());
+    for (const TrianglePair& pair : pairs) {
+        Box box;
+        for (const glm::vec3& corner : cornersOf(input, pair.first)) box.extend({corner, corner});
+        if (pair.second != NONE)
+            for (const glm::vec3& corner : cornersOf(input, pair.second)) box.extend({corner, corner});
+        const auto& [lower, upper] = box;
+        primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, uint32_t(primitives.size())});
     }
     return primitives;
 }
@@ -175,8 +191,8 @@ std::vector<RTCBuildPrimitive> usablePrimitives(const BvhInput& input)
 // Appends the subtree, children before parents; returns its root's index.
 uint32_t flatten(const BuildNode& node, const Box& box, BinaryTree& out)
 {
-    if (node.triangle != NONE) {
-        out.push_back({.box = box, .left = node.triangle});
+    if (node.pair != NONE) {
+        out.push_back({.box = box, .left = node.pair});
     } else {
         const uint32_t left = flatten(*node.children[0], node.childBoxes[0], out);
         const uint32_t right = flatten(*node.children[1], node.childBoxes[1], out);
@@ -185,11 +201,13 @@ uint32_t flatten(const BuildNode& node, const Box& box, BinaryTree& out)
     return uint32_t(out.size() - 1);
 }
 
-BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive> primitives, bool spatialSplits)
+BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> pairs, bool spatialSplits)
 {
-    if (primitives.empty()) return {};
+    if (pairs.empty()) return {};
     BuildContext context;
     context.input = &input;
+    context.pairs = pairs;
+    std::vector<RTCBuildPrimitive> primitives = primitivesOf(input, pairs);
     Box scene;
     for (const RTCBuildPrimitive& p : primitives)
         scene.extend({{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}});
@@ -232,7 +250,7 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive>
         const Callback callback(build);
         CHECK_EQ(leafCount, size_t{1});
         BuildNode* node = newNode(allocator);
-        node->triangle = leaf->primID;
+        node->pair = leaf->primID;
         return node;
     };
     arguments.splitPrimitive = splitPrimitive;
@@ -240,7 +258,7 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::vector<RTCBuildPrimitive>
     arguments.userPtr = &context;
     const void* root = run(arguments, context);
     if (root == nullptr)
-        throw Error("Embree cannot build a tree over {} triangles (error {}).", count,
+        throw Error("Embree cannot build a tree over {} pairs of triangles (error {}).", count,
                     int(rtcGetDeviceError(device.get())));
     BinaryTree tree;
     tree.reserve(2 * primitives.size());
@@ -271,23 +289,23 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     const auto start = std::chrono::steady_clock::now();
 
     Bvh bvh;
-    const std::vector<RTCBuildPrimitive> primitives = usablePrimitives(input);
-    bvh.stats.skippedTriangles = input.triangles.size() - primitives.size();
-    // A triangle has at least one record: do not begin what cannot end well.
-    requireFits("triangles", primitives.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
-    WideTree tree = collapse(reinsert(buildBinaryTree(input, primitives, true)));
-    if (bytesOf(tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE) > maxTableBytes) {
-        tree = collapse(reinsert(buildBinaryTree(input, primitives, false)));
-    }
-    requireFits("triangles", tree.triangles.size(), shared::BVH_TRIANGLE_STRIDE, maxTableBytes);
+    const std::vector<uint32_t> usable = usableTriangles(input);
+    bvh.stats.skippedTriangles = input.triangles.size() - usable.size();
+    const std::vector<TrianglePair> pairs = pairTriangles(input, usable);
+    // A pair has at least one record: do not begin what cannot end well.
+    requireFits("pairs of triangles", pairs.size(), shared::BVH_RECORD_STRIDE, maxTableBytes);
+    WideTree tree = collapse(reinsert(buildBinaryTree(input, pairs, true)));
+    if (bytesOf(tree.pairs.size(), shared::BVH_RECORD_STRIDE) > maxTableBytes)
+        tree = collapse(reinsert(buildBinaryTree(input, pairs, false)));
+    requireFits("pairs of triangles", tree.pairs.size(), shared::BVH_RECORD_STRIDE, maxTableBytes);
     const NodeLayout layout = layOut(tree);
     requireFits("tree nodes", layout.rows, shared::BVH_NODE_STRIDE,
                 std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES, shared::BVH_NODE_STRIDE)));
 
     bvh.nodes = encodeNodes(tree, layout);
-    bvh.triangles = encodeTriangles(tree, input);
+    bvh.triangles = encodeTriangles(tree, pairs, input);
     bvh.stats.nodes = tree.nodes.size();
-    bvh.stats.triangleRecords = tree.triangles.size();
+    bvh.stats.triangleRecords = tree.pairs.size();
     bvh.stats.bytes = (bvh.nodes.size() + bvh.triangles.size()) * sizeof(glm::uvec4);
     bvh.stats.sahCost = sahCost(tree);
     bvh.stats.depth = tree.levels;

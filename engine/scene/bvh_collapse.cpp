@@ -12,12 +12,12 @@ namespace scene
 namespace
 {
 
-// What is best for one binary node: cost[i-1] of its triangles when it may become at most i roots of wide subtrees.
+// What is best for one binary node: cost[i-1] of its pairs when it may become at most i roots of wide subtrees.
 struct Plan {
     std::array<float, BVH_WIDTH - 1> cost = {};
     std::array<uint8_t, BVH_WIDTH - 1> left =
         {}; // [i-2]: of i roots, those left of the split; 0: i-1 roots are as good
-    uint32_t triangles = 1;
+    uint32_t pairs = 1;
     uint32_t height = 0;
     bool leaf = true; // as one root: a leaf
 };
@@ -49,12 +49,12 @@ class Collapser
         Plan plan;
         const float area = node.box.halfArea();
         if (node.isLeaf()) {
-            plan.cost.fill(area * BVH_TRIANGLE_COST);
+            plan.cost.fill(area * BVH_PAIR_COST);
             return plan;
         }
         const Plan& left = plans_[node.left];
         const Plan& right = plans_[node.right];
-        plan.triangles = left.triangles + right.triangles;
+        plan.pairs = left.pairs + right.pairs;
         plan.height = 1 + std::max(left.height, right.height);
 
         const auto split = [&](uint32_t roots) {
@@ -66,8 +66,8 @@ class Collapser
         const auto [forest, leftOfEight] = split(BVH_WIDTH);
         plan.left[BVH_WIDTH - 2] = leftOfEight;
         const float asNode = forest + area * BVH_NODE_COST;
-        const float asLeaf = area * float(plan.triangles) * BVH_TRIANGLE_COST;
-        plan.leaf = plan.triangles <= BVH_LEAF_TRIANGLES && asLeaf <= asNode;
+        const float asLeaf = area * float(plan.pairs) * BVH_PAIR_COST;
+        plan.leaf = plan.pairs <= BVH_LEAF_PAIRS && asLeaf <= asNode;
         plan.cost[0] = plan.leaf ? asLeaf : asNode;
         for (uint32_t roots = 2; roots < BVH_WIDTH; ++roots) {
             const auto [cost, leftRoots] = split(roots);
@@ -119,18 +119,15 @@ class Collapser
         return roots;
     }
 
-    bool isLeaf(uint32_t node) const
-    {
-        return byHeight_ ? plans_[node].triangles <= BVH_LEAF_TRIANGLES : plans_[node].leaf;
-    }
+    bool isLeaf(uint32_t node) const { return byHeight_ ? plans_[node].pairs <= BVH_LEAF_PAIRS : plans_[node].leaf; }
 
-    void gatherTriangles(uint32_t node, std::vector<uint32_t>& out) const
+    void gatherPairs(uint32_t node, std::vector<uint32_t>& out) const
     {
         if (tree_[node].isLeaf()) {
             out.push_back(tree_[node].left);
         } else {
-            gatherTriangles(tree_[node].left, out);
-            gatherTriangles(tree_[node].right, out);
+            gatherPairs(tree_[node].left, out);
+            gatherPairs(tree_[node].right, out);
         }
     }
 
@@ -194,12 +191,12 @@ class Collapser
             child.box = tree_[root].box;
             if (isLeaf(root)) {
                 child.kind = WideChild::Kind::Leaf;
-                child.first = uint32_t(wide.triangles.size());
-                gatherTriangles(root, wide.triangles);
-                const auto begin = wide.triangles.begin() + child.first; // spatial splits can bring one twice
-                std::sort(begin, wide.triangles.end());
-                wide.triangles.erase(std::unique(begin, wide.triangles.end()), wide.triangles.end());
-                child.count = uint8_t(wide.triangles.size() - child.first);
+                child.first = uint32_t(wide.pairs.size());
+                gatherPairs(root, wide.pairs);
+                const auto begin = wide.pairs.begin() + child.first; // spatial splits can bring one twice
+                std::sort(begin, wide.pairs.end());
+                wide.pairs.erase(std::unique(begin, wide.pairs.end()), wide.pairs.end());
+                child.count = uint8_t(wide.pairs.size() - child.first);
             } else {
                 child.kind = WideChild::Kind::Node;
                 child.first = firstChild + uint32_t(inner.size());
@@ -225,14 +222,14 @@ WideTree collapse(const BinaryTree& tree)
 
 double sahCost(const WideTree& tree)
 {
-    if (tree.triangles.empty()) return 0;
+    if (tree.pairs.empty()) return 0;
     Box root;
     for (const WideChild& child : tree.nodes[0].slots) root.extend(child.box);
     double cost = BVH_NODE_COST * root.halfArea();
     for (const WideNode& node : tree.nodes)
         for (const WideChild& child : node.slots) {
             if (child.kind == WideChild::Kind::Node) cost += BVH_NODE_COST * child.box.halfArea();
-            if (child.kind == WideChild::Kind::Leaf) cost += BVH_TRIANGLE_COST * child.count * child.box.halfArea();
+            if (child.kind == WideChild::Kind::Leaf) cost += BVH_PAIR_COST * child.count * child.box.halfArea();
         }
     return cost / root.halfArea();
 }

@@ -44,7 +44,7 @@ uint32_t quantize(double value)
 }
 
 // Those of one node are contiguous, in order of slots.
-uint32_t firstTriangleOf(const WideNode& node)
+uint32_t firstRecordOf(const WideNode& node)
 {
     for (const WideChild& child : node.slots)
         if (child.kind == WideChild::Kind::Leaf) return child.first;
@@ -59,7 +59,7 @@ std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, uin
 
     std::array<glm::uvec4, shared::BVH_NODE_STRIDE> words = {};
     const uint32_t masks = masksOf(node);
-    words[1] = {masks, firstNode << 8, firstTriangleOf(node), 0};
+    words[1] = {masks, firstNode << 8, firstRecordOf(node), 0};
     if (masks == 0) return words;
     for (int axis = 0; axis < 3; ++axis) {
         const Grid grid = fitGrid(double(box.lower[axis]) - margin, double(box.upper[axis]) + margin);
@@ -99,19 +99,27 @@ std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layo
     return table;
 }
 
-std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& input)
+std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, std::span<const TrianglePair> pairs,
+                                        const BvhInput& input)
 {
-    if (tree.triangles.empty()) return std::vector<glm::uvec4>(shared::BVH_TRIANGLE_STRIDE); // tables are never empty
+    if (tree.pairs.empty()) return std::vector<glm::uvec4>(shared::BVH_RECORD_STRIDE); // tables are never empty
     std::vector<glm::uvec4> table;
-    table.reserve(tree.triangles.size() * shared::BVH_TRIANGLE_STRIDE);
-    for (const uint32_t index : tree.triangles) {
-        const bool alpha = !input.needsAlphaTest.empty() && input.needsAlphaTest[index] != 0;
-        for (int corner = 0; corner < 3; ++corner) {
-            const glm::vec3 v = input.positions[input.triangles[index].vertices[size_t(corner)]];
-            const uint32_t tag = corner == 0 ? index | (alpha ? shared::BVH_ALPHA_FLAG : 0u) : 0u;
-            table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z),
-                               tag);
-        }
+    table.reserve(tree.pairs.size() * shared::BVH_RECORD_STRIDE);
+    const auto add = [&](uint32_t triangle, uint32_t corner, uint32_t tag) {
+        const glm::vec3 v = input.positions[input.triangles[triangle].vertices[corner % 3]];
+        table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z),
+                           tag);
+    };
+    for (const uint32_t index : tree.pairs) {
+        const TrianglePair& pair = pairs[index];
+        const bool alpha = !input.needsAlphaTest.empty() && input.needsAlphaTest[pair.first] != 0;
+        add(pair.first, pair.firstTurn, pair.first | (alpha ? shared::BVH_ALPHA_FLAG : 0u));
+        add(pair.first, pair.firstTurn + 1, pair.second == NONE ? 0u : pair.second);
+        add(pair.first, pair.firstTurn + 2, pair.firstTurn);
+        if (pair.second == NONE)
+            add(pair.first, pair.firstTurn + 1, 0u);
+        else
+            add(pair.second, pair.secondTurn, pair.secondTurn);
     }
     return table;
 }

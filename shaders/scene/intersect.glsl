@@ -156,34 +156,78 @@ uint bitsBelow(uint bit)
     return (1u << bit) - 1u;
 }
 
+// A triangle in the ray's frame.
+struct TriangleMeeting {
+    bool met;     // by the ray's line
+    vec3 weights; // of its corners: barycentrics times `total`
+    float total;
+    float t;
+};
+
+float cross2(vec2 a, vec2 b)
+{
+    precise float product = a.x * b.y - a.y * b.x;
+    return product;
+}
+
+// `toCorner0`: from the ray's origin.
+TriangleMeeting meetTriangle(TraversalRay r, vec3 weights, vec3 toCorner0, vec3 corner0, vec3 corner1, vec3 corner2)
+{
+    TriangleMeeting m;
+    m.weights = weights;
+    m.total = weights.x + weights.y + weights.z;
+    vec3 normal = cross(corner1 - corner0, corner2 - corner0);
+    float slope = dot(normal, r.direction);
+    bool inside = (weights.x >= 0.0 && weights.y >= 0.0 && weights.z >= 0.0) ||
+                  (weights.x <= 0.0 && weights.y <= 0.0 && weights.z <= 0.0);
+    m.met = inside && m.total != 0.0 && slope != 0.0;
+    m.t = dot(normal, toCorner0) / slope;
+    return m;
+}
+
+// The nearer of a record's triangles that the ray meets before `nearest`, or at the same t and of lower index.
+//
 // Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else,
 // and two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v
 // are convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
-bool meetsTriangle(TraversalRay r, vec3 v0, vec3 v1, vec3 v2, out float t, out vec2 barycentric)
+bool meetsRecord(TraversalRay r, uvec4 row0, uvec4 row1, uvec4 row2, uvec4 row3, bool any, Hit nearest, out Hit met)
 {
-    vec3 a = v0 - r.origin;
-    vec3 b = v1 - r.origin;
-    vec3 c = v2 - r.origin;
-    vec2 p = vec2(dot(a, r.tangent), dot(a, r.bitangent));
-    vec2 q = vec2(dot(b, r.tangent), dot(b, r.bitangent));
-    vec2 s = vec2(dot(c, r.tangent), dot(c, r.bitangent));
-    precise float w0 = s.x * q.y - s.y * q.x;
-    precise float w1 = p.x * s.y - p.y * s.x;
-    precise float w2 = q.x * p.y - q.y * p.x;
-    float total = w0 + w1 + w2;
-    vec3 normal = cross(v1 - v0, v2 - v0);
-    float slope = dot(normal, r.direction);
-    bool inside = (w0 >= 0.0 && w1 >= 0.0 && w2 >= 0.0) || (w0 <= 0.0 && w1 <= 0.0 && w2 <= 0.0);
-    bool met = inside && total != 0.0 && slope != 0.0;
-    float invTotal = 1.0/total;
-    barycentric = vec2(w1, w2) * invTotal;
-    t = dot(normal, a) / slope;
-    return met;
+    vec3 corner0 = uintBitsToFloat(row0.xyz);
+    vec3 corner1 = uintBitsToFloat(row1.xyz);
+    vec3 corner2 = uintBitsToFloat(row2.xyz);
+    vec3 corner3 = uintBitsToFloat(row3.xyz);
+    vec3 to0 = corner0 - r.origin;
+    vec3 to1 = corner1 - r.origin;
+    vec3 to2 = corner2 - r.origin;
+    vec3 to3 = corner3 - r.origin;
+    vec2 p0 = vec2(dot(to0, r.tangent), dot(to0, r.bitangent));
+    vec2 p1 = vec2(dot(to1, r.tangent), dot(to1, r.bitangent));
+    vec2 p2 = vec2(dot(to2, r.tangent), dot(to2, r.bitangent));
+    vec2 p3 = vec2(dot(to3, r.tangent), dot(to3, r.bitangent));
+    float edge = cross2(p2, p1);
+    vec3 firstWeights = vec3(edge, cross2(p0, p2), cross2(p1, p0));
+    vec3 secondWeights = vec3(-edge, cross2(p3, p1), cross2(p2, p3));
+    TriangleMeeting first = meetTriangle(r, firstWeights, to0, corner0, corner1, corner2);
+    TriangleMeeting second = meetTriangle(r, secondWeights, to3, corner3, corner2, corner1);
+    uint index0 = row0.w & ~BVH_ALPHA_FLAG;
+    uint index1 = row1.w;
+    bool meetsFirst = first.met && first.t >= r.tMin &&
+                      (first.t < nearest.t || (!any && first.t == nearest.t && index0 < nearest.triangle));
+    bool meetsSecond = second.met && second.t >= r.tMin &&
+                       (second.t < nearest.t || (!any && second.t == nearest.t && index1 < nearest.triangle));
+    bool takesSecond =
+        meetsSecond && (!meetsFirst || second.t < first.t || (second.t == first.t && index1 < index0));
+    vec3 weights = takesSecond ? second.weights : first.weights;
+    uint turn = takesSecond ? row3.w : row2.w;
+    vec2 turned = turn == 0u ? weights.yz : turn == 1u ? weights.xy : weights.zx; // of the triangle's vertices 1 and 2
+    met = Hit(takesSecond ? index1 : index0, turned / (takesSecond ? second.total : first.total),
+              takesSecond ? second.t : first.t);
+    return meetsFirst || meetsSecond;
 }
 
 // Node visits after which a search for the nearest hit sees to the triangles that other lanes have found. A search for
 // any hit only waits for its own: it ends at the first.
-const uint NODES_BEFORE_TRIANGLES = 3u;
+const uint NODES_BEFORE_TRIANGLES = 4u;
 
 // Depth-first: the nearest first for the nearest hit; for any hit the farthest, as a ray begins along its own surface,
 // where it meets boxes but no triangles. A group is the rest of one node's child nodes: those to visit in bits 0..7, in
@@ -206,17 +250,17 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     // Of the node whose triangles are to be tested.
     uint masks = 0u;
     uint firstRecord = 0u;
-    uint triangles = 0u;
+    uint records = 0u; // of its mask bits, those left
     // A hit if its alpha passes.
     bool asks = false;
     Hit asking = Hit(0u, vec2(0.0), 0.0);
     LOOP_BEGIN(more)
         LOOP_BEGIN(more && !asks)
             uint visits = 0u;
-            LOOP_BEGIN(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+            LOOP_BEGIN(records == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
                 // Always, but after an alpha test: then there may be nothing to visit.
-                bool walks = !HAS_ALPHA || (triangles == 0u && (group & 255u) != 0u);
-                bool isFirst = triangles == 0u; // always; what leaves this loop must be made from what was (see the top)
+                bool walks = !HAS_ALPHA || (records == 0u && (group & 255u) != 0u);
+                bool isFirst = records == 0u; // always; what leaves this loop must be made from what was (see the top)
                 ++visits;
                 uint slot = uint(findLSB(group)) ^ order;
                 uint node = walks ? BVH_NODE_STRIDE * ((group >> 8) + slot) : 0u;
@@ -232,7 +276,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
                                          FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
                 masks = isFirst ? links.x : masks;
                 firstRecord = isFirst ? links.z : firstRecord;
-                triangles |= walks ? hits & 0xffffffu : 0u;
+                records |= walks ? hits & 0xffffffu : 0u;
                 uint children = links.y | inOrder(hits >> 24, order);
 
                 bool enters = (children & 255u) != 0u;
@@ -255,36 +299,32 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
                     next = pops ? top : children;
                 }
                 group = walks ? next : group;
-            LOOP_END(triangles == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
+            LOOP_END(records == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
 
-            LOOP_BEGIN(triangles != 0u && !asks)
-                bool valid = triangles != 0u;
-                uint earlier = masks & ((triangles & (0u - triangles)) - 1u); // mask bits below the lowest
-                uint record = valid ? BVH_TRIANGLE_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
-                triangles &= triangles - 1u;
-                uvec4 v0 = FETCH(Triangles, record);
-                vec3 v1 = uintBitsToFloat(FETCH(Triangles, record + 1u).xyz);
-                vec3 v2 = uintBitsToFloat(FETCH(Triangles, record + 2u).xyz);
-                float t;
-                vec2 barycentric;
-                bool met = meetsTriangle(r, uintBitsToFloat(v0.xyz), v1, v2, t, barycentric) && valid;
-                uint triangle = v0.w & ~BVH_ALPHA_FLAG;
-                met = met && t >= r.tMin && (t < hit.t || (!any && t == hit.t && triangle < hit.triangle));
+            LOOP_BEGIN(records != 0u && !asks)
+                bool valid = records != 0u;
+                uint earlier = masks & ((records & (0u - records)) - 1u); // mask bits below the lowest
+                uint record = valid ? BVH_RECORD_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
+                records &= records - 1u;
+                uvec4 row0 = FETCH(Triangles, record);
+                Hit found;
+                bool met = meetsRecord(r, row0, FETCH(Triangles, record + 1u), FETCH(Triangles, record + 2u),
+                                       FETCH(Triangles, record + 3u), any, hit, found) && valid;
                 if (HAS_ALPHA) {
-                    bool isFlagged = met && (v0.w & BVH_ALPHA_FLAG) != 0u;
-                    if (isFlagged) asking = Hit(triangle, barycentric, t);
+                    bool isFlagged = met && (row0.w & BVH_ALPHA_FLAG) != 0u;
+                    if (isFlagged) asking = found;
                     asks = asks || isFlagged;
                     met = met && !isFlagged;
                 }
                 if (any) {
                     blocked = blocked || met;
-                    triangles = met ? 0u : triangles;
+                    records = met ? 0u : records;
                 } else if (met) {
-                    hit = Hit(triangle, barycentric, t);
+                    hit = found;
                 }
-            LOOP_END(triangles != 0u && !asks)
+            LOOP_END(records != 0u && !asks)
 
-            more = (triangles != 0u || (group & 255u) != 0u) && !blocked;
+            more = (records != 0u || (group & 255u) != 0u) && !blocked;
         LOOP_END(more && !asks)
         if (HAS_ALPHA) {
             // No `if` around the fetches: lavapipe (Mesa 22.3) miscompiled one here, and rays missed triangles

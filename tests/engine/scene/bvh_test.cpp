@@ -67,12 +67,45 @@ Mesh soup(uint32_t count, uint32_t seed)
     return mesh;
 }
 
+// Pairs of triangles with a common edge, each beginning at a vertex of its own, as long and as thin as those above.
+Mesh pairedSoup(uint32_t count, uint32_t seed)
+{
+    Random random(seed);
+    Mesh mesh;
+    const auto addTurned = [&](std::array<glm::vec3, 3> v) {
+        std::rotate(v.begin(), v.begin() + int(random.between(0, 2.999f)), v.end());
+        mesh.add(v[0], v[1], v[2]);
+    };
+    for (uint32_t i = 0; i < count / 2; ++i) {
+        const glm::vec3 center = random.point(1.0f);
+        const float size = std::pow(10.0f, random.between(-4.0f, 0.0f));
+        const glm::vec3 a = center + random.point(size), b = center + random.point(size);
+        const glm::vec3 c = center + random.point(0.3f * size), d = a + b - c;
+        addTurned({a, b, c});
+        addTurned({b, a, d});
+    }
+    return mesh;
+}
+
 // Reads the tables as shared/bvh.h describes them.
 struct Slot {
     Box box;
     std::optional<uint32_t> node;
     std::vector<uint32_t> triangles;
 };
+
+const glm::uvec4* recordOf(const Bvh& bvh, size_t record)
+{
+    return &bvh.triangles[record * shared::BVH_RECORD_STRIDE];
+}
+
+std::vector<uint32_t> trianglesOf(const Bvh& bvh, size_t record)
+{
+    const glm::uvec4* words = recordOf(bvh, record);
+    std::vector<uint32_t> triangles = {words[0].w & ~shared::BVH_ALPHA_FLAG};
+    if (glm::uvec3(words[3]) != glm::uvec3(words[1])) triangles.push_back(words[1].w);
+    return triangles;
+}
 
 std::vector<Slot> slotsOf(const Bvh& bvh, uint32_t node)
 {
@@ -94,8 +127,7 @@ std::vector<Slot> slotsOf(const Bvh& bvh, uint32_t node)
         if ((words[1].x >> (24 + s) & 1u) != 0) slot.node = (words[1].y >> 8) + s;
         for (uint32_t k = 0; k < 3; ++k)
             if ((words[1].x >> (3 * s + k) & 1u) != 0)
-                slot.triangles.push_back(bvh.triangles[size_t{nextRecord++} * shared::BVH_TRIANGLE_STRIDE].w &
-                                         ~shared::BVH_ALPHA_FLAG);
+                for (const uint32_t triangle : trianglesOf(bvh, nextRecord++)) slot.triangles.push_back(triangle);
         if (slot.node || !slot.triangles.empty()) slots.push_back(slot);
     }
     return slots;
@@ -183,11 +215,10 @@ TEST(Bvh, ReachesEveryTriangleAndEveryNodeOnce)
 
 // Spatial splits cut triangles: each of a triangle's points must lie in some leaf that names it, ancestors' boxes
 // included.
-TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
+void expectCovered(const Mesh& mesh, size_t leastRecords)
 {
-    const Mesh mesh = soup(5000, 7);
     const Bvh bvh = mesh.build();
-    ASSERT_GT(bvh.stats.triangleRecords, mesh.triangles.size()) << "no spatial split: the test says too little";
+    ASSERT_GT(bvh.stats.triangleRecords, leastRecords) << "no spatial split: the test says too little";
     Random random(8);
     for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
         const auto v = mesh.corners(triangle);
@@ -206,9 +237,84 @@ TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
     }
 }
 
+TEST(Bvh, BoxesCoverEveryPointOfEveryTriangle)
+{
+    expectCovered(soup(5000, 7), 5000);
+    expectCovered(pairedSoup(5000, 7), 2500);
+}
+
+// Exactly those in a pair that share an edge, in opposite directions, and what the record says of their corners.
+TEST(Bvh, PairsTrianglesAcrossTheirCommonEdge)
+{
+    const Mesh mesh = pairedSoup(2000, 9);
+    const Bvh bvh = mesh.build();
+    uint64_t paired = 0;
+    for (size_t record = 0; record < bvh.stats.triangleRecords; ++record) {
+        const glm::uvec4* words = recordOf(bvh, record);
+        const auto cornerAt = [&](int i) {
+            return glm::dvec3(std::bit_cast<float>(words[i].x), std::bit_cast<float>(words[i].y),
+                              std::bit_cast<float>(words[i].z));
+        };
+        const std::vector<uint32_t> triangles = trianglesOf(bvh, record);
+        for (size_t k = 0; k < triangles.size(); ++k) {
+            const std::array<int, 3> corners = k == 0 ? std::array{0, 1, 2} : std::array{3, 2, 1};
+            const uint32_t turn = words[k == 0 ? 2 : 3].w;
+            ASSERT_LT(turn, 3u);
+            for (uint32_t i = 0; i < 3; ++i)
+                EXPECT_EQ(cornerAt(corners[i]), mesh.corners(triangles[k])[(turn + i) % 3]) << "record " << record;
+        }
+        if (triangles.size() == 1) continue;
+        EXPECT_EQ(triangles[0] / 2, triangles[1] / 2);
+        ++paired;
+    }
+    EXPECT_GE(paired, 900u); // a few have a smaller box apart than together
+}
+
+// A pair's box must be smaller than both boxes; a triangle that is asked for its alpha stays alone, one that is left
+// out pairs with none.
+TEST(Bvh, PairsOnlyWhereThatPays)
+{
+    const auto recordsOf = [](const Mesh& mesh, std::vector<uint8_t> alpha = {}) {
+        return scene::buildBvh({.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = alpha},
+                               ANY_SIZE)
+            .stats.triangleRecords;
+    };
+    Mesh square;
+    square.add({0, 0, 0}, {1, 0, 0}, {1, 1, 0});
+    square.add({0, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    EXPECT_EQ(recordsOf(square), 1u);
+    EXPECT_EQ(recordsOf(square, {1, 0}), 2u);
+    EXPECT_EQ(recordsOf(square, {1, 1}), 2u);
+
+    Mesh folded; // flat boxes at right angles: together a cube
+    folded.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    folded.add({1, 0, 0}, {0, 0, 0}, {0, 0, 1});
+    EXPECT_EQ(recordsOf(folded), 2u);
+
+    Mesh sameWay; // the common edge in the same direction twice: one of them faces the other way
+    sameWay.add({0, 0, 0}, {1, 0, 0}, {1, 1, 0});
+    sameWay.add({1, 1, 0}, {0, 0, 0}, {0, 1, 0});
+    sameWay.triangles[1].vertices = {sameWay.triangles[1].vertices[1], sameWay.triangles[1].vertices[0],
+                                     sameWay.triangles[1].vertices[2]};
+    EXPECT_EQ(recordsOf(sameWay), 1u);
+    std::swap(sameWay.triangles[1].vertices[0], sameWay.triangles[1].vertices[1]);
+    EXPECT_EQ(recordsOf(sameWay), 2u);
+
+    Mesh broken;
+    broken.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    broken.add({1, 0, 0}, {0, 0, 0}, {2, 0, 0}); // on the edge's line
+    EXPECT_EQ(recordsOf(broken), 1u);
+    EXPECT_EQ(reachable(broken.build()), (std::multiset<uint32_t>{0}));
+}
+
 TEST(Bvh, FindsTheNearestHitThatBruteForceFinds)
 {
-    const Mesh mesh = soup(2000, 3);
+    Mesh mesh = soup(1000, 3);
+    const Mesh paired = pairedSoup(1000, 3);
+    for (uint32_t t = 0; t < paired.triangles.size(); ++t) {
+        const auto& v = paired.triangles[t].vertices;
+        mesh.add(paired.positions[v[0]], paired.positions[v[1]], paired.positions[v[2]]);
+    }
     const Bvh bvh = mesh.build();
     Random random(4);
     int hits = 0;
@@ -248,7 +354,7 @@ TEST(Bvh, OfNothingHasOneNodeWithoutChildren)
 {
     const Bvh bvh = Mesh{}.build();
     EXPECT_EQ(bvh.nodes.size(), shared::BVH_NODE_STRIDE);
-    EXPECT_EQ(bvh.triangles.size(), shared::BVH_TRIANGLE_STRIDE); // a table cannot be empty
+    EXPECT_EQ(bvh.triangles.size(), shared::BVH_RECORD_STRIDE); // a table cannot be empty
     EXPECT_TRUE(reachable(bvh).empty());
     EXPECT_EQ(bvh.stats.sahCost, 0);
 }
@@ -261,7 +367,7 @@ TEST(Bvh, MarksTrianglesThatNeedAnAlphaTest)
     const Bvh bvh =
         scene::buildBvh({.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = flags}, ANY_SIZE);
     for (size_t record = 0; record < bvh.stats.triangleRecords; ++record) {
-        const uint32_t tag = bvh.triangles[record * shared::BVH_TRIANGLE_STRIDE].w;
+        const uint32_t tag = bvh.triangles[record * shared::BVH_RECORD_STRIDE].w;
         EXPECT_EQ((tag & shared::BVH_ALPHA_FLAG) != 0, flags[tag & ~shared::BVH_ALPHA_FLAG] != 0);
     }
 }
@@ -309,7 +415,7 @@ TEST(BvhCollapse, BoundsTheDepthOfADegenerateTree)
         spine = uint32_t(tree.size() - 1);
     }
     const scene::WideTree wide = scene::collapse(tree);
-    EXPECT_EQ(wide.triangles.size(), (spineLevels + 1) << BUSH_LEVELS);
+    EXPECT_EQ(wide.pairs.size(), (spineLevels + 1) << BUSH_LEVELS);
     EXPECT_LE(wide.levels, shared::BVH_STACK_SIZE);
 }
 
@@ -353,7 +459,7 @@ TEST(BvhCollapse, IsNoDearerThanRandomCollapses)
         }
         for (const uint32_t child : roots) {
             const uint32_t leaves = leavesUnder(leavesUnder, child);
-            const double asLeaf = scene::BVH_TRIANGLE_COST * double(leaves) * tree[child].box.halfArea();
+            const double asLeaf = scene::BVH_PAIR_COST * double(leaves) * tree[child].box.halfArea();
             if (tree[child].isLeaf())
                 cost += asLeaf;
             else if (leaves <= 3)
@@ -440,7 +546,7 @@ TEST(BvhReinsert, LeavesATreeThatWouldGetTooDeep)
 TEST(Bvh, ThatDoesNotFitIsAnErrorAndSplitsGiveWayFirst)
 {
     const Mesh mesh = soup(5000, 7);
-    const uint64_t recordBytes = shared::BVH_TRIANGLE_STRIDE * sizeof(glm::uvec4);
+    const uint64_t recordBytes = shared::BVH_RECORD_STRIDE * sizeof(glm::uvec4);
     const Bvh split = mesh.build();
     ASSERT_GT(split.stats.triangleRecords, mesh.triangles.size());
     const Bvh tight = mesh.build(mesh.triangles.size() * recordBytes);

@@ -57,6 +57,16 @@ Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RT
     return std::abs(nearer.inside) <= EDGE ? Reason::Edge : Reason::None;
 }
 
+// How far the point that a hit's barycentrics name is from the ray.
+double distanceFromRay(const Mesh& mesh, const Hit& hit, const TestRay& ray)
+{
+    const auto& index = mesh.triangles[hit.triangle()].vertices;
+    const double u = hit.u, v = hit.v;
+    const glm::dvec3 point = (1 - u - v) * glm::dvec3(mesh.positions[index[0]]) +
+                             u * glm::dvec3(mesh.positions[index[1]]) + v * glm::dvec3(mesh.positions[index[2]]);
+    return glm::length(glm::cross(point - glm::dvec3(ray.origin), glm::dvec3(ray.direction)));
+}
+
 // For each triangle the lowest index of its copies: Sponza has some hundreds, and Embree reports any of them.
 std::vector<uint32_t> firstCopies(const Mesh& mesh)
 {
@@ -93,6 +103,7 @@ class IntersectAgreement : public Intersect
         for (const glm::vec3& p : scene.positions)
             magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 
+        double farthest = 0; // point of a hit from its ray
         size_t hitCount = 0, edges = 0, ties = 0, roundings = 0, unexplained = 0, occlusionDiffers = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             const RTCRayHit theirs = embree.intersect(rays[i]);
@@ -102,6 +113,7 @@ class IntersectAgreement : public Intersect
             hitCount += primitive != NO_HIT ? 1 : 0;
             if (primitive == hits[i].triangle()) {
                 if (primitive == NO_HIT) continue;
+                farthest = std::max(farthest, distanceFromRay(mesh, hits[i], rays[i]));
                 const double difference = std::abs(double(hits[i].t) - theirs.ray.tfar);
                 if (difference <= 1e-4 * theirs.ray.tfar) continue;
                 // A hit so near that the rounding of coordinates is a larger part of t.
@@ -121,6 +133,7 @@ class IntersectAgreement : public Intersect
         EXPECT_GT(hitCount, rays.size() / 2);
         EXPECT_GE(agreement, 0.9999);
         EXPECT_EQ(unexplained, 0u);
+        EXPECT_LT(farthest, 1e-5 * double(magnitude));
         EXPECT_EQ(occlusionDiffers, 0u);
     }
 };
@@ -192,6 +205,55 @@ TEST_F(Intersect, GivesPositionByBarycentricsAndDistance)
     EXPECT_NEAR(hit.u, 0.25f, 1e-6f);
     EXPECT_NEAR(hit.v, 0.5f, 1e-6f);
     EXPECT_NEAR(hit.t, 2.0f, 1e-6f);
+}
+
+// Two triangles in one record, folded so that some rays meet both, each beginning with each of its vertices.
+TEST_F(Intersect, MeetsTheNearerOfAPairWhateverTheirOrderOfVertices)
+{
+    const glm::vec3 a = {0, 0, 0}, b = {0, 1, 0}, c = {1, 0.5f, 0.25f}, d = {0.9f, 0.5f, -0.25f};
+    std::mt19937 engine(6);
+    std::uniform_real_distribution<float> place(-0.2f, 1.2f);
+    for (size_t turn = 0; turn < 9; ++turn) {
+        std::array<glm::vec3, 3> first = {a, b, c}, second = {b, a, d};
+        std::rotate(first.begin(), first.begin() + std::ptrdiff_t(turn % 3), first.end());
+        std::rotate(second.begin(), second.begin() + std::ptrdiff_t(turn / 3), second.end());
+        Mesh mesh;
+        mesh.add(first[0], first[1], first[2]);
+        mesh.add(second[0], second[1], second[2]);
+        ASSERT_EQ(
+            scene::buildBvh({.positions = mesh.positions, .triangles = mesh.triangles}, ~0ull).stats.triangleRecords,
+            1u);
+        std::vector<TestRay> rays;
+        for (int i = 0; i < 4000; ++i) {
+            // From either side, and from between the two.
+            const glm::vec3 from = {0.5f * place(engine), place(engine), std::array{-1.0f, 0.0f, 1.0f}[size_t(i) % 3]};
+            const glm::vec3 to = {place(engine), place(engine), from.z == 0 ? place(engine) - 0.5f : 0.0f};
+            rays.push_back({from, i % 4 == 0 ? 1.0f : FAR, glm::normalize(to - from)});
+        }
+        const std::vector<Hit> hits = trace(mesh, rays);
+        std::array<int, 3> counts = {}; // of either triangle as the nearest; of both met
+        for (size_t i = 0; i < rays.size(); ++i) {
+            std::array<Exact, 2> exact = {meet(mesh, 0, rays[i]), meet(mesh, 1, rays[i])};
+            bool atAnEdge = false;
+            std::array<bool, 2> met = {};
+            for (size_t k = 0; k < 2; ++k) {
+                met[k] = exact[k].inside >= 0 && exact[k].t > 0 && exact[k].t < double(rays[i].tMax);
+                atAnEdge = atAnEdge || std::abs(exact[k].inside) < 1e-4 || std::abs(exact[k].t) < 1e-4 ||
+                           std::abs(exact[k].t - double(rays[i].tMax)) < 1e-4;
+            }
+            if (atAnEdge) continue;
+            ASSERT_EQ(hits[i].isHit(), met[0] || met[1]) << i;
+            ASSERT_EQ(hits[i].occluded(), met[0] || met[1]) << i;
+            if (!hits[i].isHit()) continue;
+            const size_t nearer = met[0] && (!met[1] || exact[0].t < exact[1].t) ? 0 : 1;
+            ASSERT_EQ(hits[i].triangle(), nearer) << i;
+            EXPECT_NEAR(double(hits[i].t), exact[nearer].t, 1e-5);
+            EXPECT_LT(distanceFromRay(mesh, hits[i], rays[i]), 2e-6) << "turns " << turn % 3 << ", " << turn / 3;
+            ++counts[nearer];
+            counts[2] += met[0] && met[1] ? 1 : 0;
+        }
+        for (const int count : counts) EXPECT_GT(count, 50);
+    }
 }
 
 TEST_F(Intersect, EndsAtTMax)
