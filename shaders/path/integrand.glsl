@@ -6,6 +6,9 @@
 
 #include "restir/reservoir.glsl"
 
+#ifndef VISIT_ASKS
+#define VISIT_ASKS (SHIFT_MAP != SHIFT_REPLAY)
+#endif
 #include "lib/loop.glsl"
 #include "path/surfaces.glsl"
 #include "path/walk.glsl"
@@ -70,6 +73,7 @@ PathSample moving[MAX_RESERVOIRS];
 vec3 arrived[MAX_RESERVOIRS];
 uint outcome[MAX_RESERVOIRS]; // SHIFT_*
 uint open = 0u;               // bit c: reservoir c of the group is still under way
+uint joined = 0u;             // bit c: was joined by the last visit, whose ray may be blocked
 PathSeed groupSeed;
 uint joiningRays = 0u;
 uint shiftOutcomes[SHIFT_OUTCOMES] = uint[SHIFT_OUTCOMES](0u, 0u, 0u, 0u, 0u, 0u);
@@ -125,9 +129,16 @@ vec3 afterJoint(PathSample y, Bsdf at)
     return f * r.suffix * weight;
 }
 
+void visitBlocked()
+{
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+        if ((joined & (1u << c)) != 0u) settle(c, SHIFT_HIDDEN, vec3(0.0));
+}
+
 // Joins x = x_(r-1) to the reconnection vertices of all paths of the group that reconnect next.
 void join(Vertex x)
 {
+    joined = 0u;
     uint joining = 0u;
     Reconnection r;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
@@ -148,11 +159,10 @@ void join(Vertex x)
         float pdf;
         vec3 f = evaluate(x.bsdf, direction * x.bsdf.frame, direction, pdf);
         bool scatters = f != vec3(0.0);
-        bool isHidden = false;
         if (scatters && joinsLight(x.k + 1u, x.s, distance)) {
             ++joiningRays;
-            uint alphaSeed = pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w;
-            isHidden = hidden(x.s, infinite, at.position, at.geometricNormal, direction, alphaSeed);
+            visitRay = ShadowRay(true, infinite, at.position, at.geometricNormal, direction,
+                                 pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w);
         }
         // x_r as a light, and as a surface that scatters on: the same for all paths, evaluated once.
         vec4 environment = loadEnvironment(direction);
@@ -169,9 +179,10 @@ void join(Vertex x)
             bool toLight = scatteringsOf(moving[c].leaf) == x.k;
             bool joinable = toLight ? lightJoins : surfaceJoins;
             vec3 moved = vec3(0.0);
-            if (joinable && scatters && !isHidden && (toLight || !endsHere))
+            if (joinable && scatters && (toLight || !endsHere))
                 moved = prefix * (toLight ? asLight : afterJoint(moving[c], onward));
-            settle(c, !joinable ? SHIFT_NOT_JOINABLE : isHidden ? SHIFT_HIDDEN : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
+            settle(c, !joinable ? SHIFT_NOT_JOINABLE : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
+            joined |= joinable ? 1u << c : 0u;
         }
     }
 }
@@ -202,6 +213,8 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         }
         left |= 1u << c;
     }
+    Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
+    Bsdf firstBsdf = makeBsdf(first, to.wo);
     LOOP_BEGIN(left != 0u)
         for (uint c = RESERVOIR_COUNT; c-- > 0u;)
             if ((left & (1u << c)) != 0u) groupSeed = moving[c].seed;
@@ -214,11 +227,11 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
             arrived[c] = vec3(0.0);
             outcome[c] = SHIFT_ENDED;
         }
-        walk(loadSurface(to.triangle, to.barycentric, to.wo), to.wo, groupSeed);
+        walk(first, firstBsdf, to.wo, groupSeed);
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if ((group & (1u << c)) == 0u) continue;
             f[c] = finiteOrCounted(arrived[c], STAGE);
-            ++shiftOutcomes[outcome[c]];
+            for (uint i = 0u; i < SHIFT_OUTCOMES; ++i) shiftOutcomes[i] += outcome[c] == i ? 1u : 0u; // no indexed store
         }
     LOOP_END(left != 0u)
 }

@@ -15,8 +15,8 @@
 // Node 0 is the root, its grid covers the scene. Children of other nodes fill the gaps that b + s leaves.
 //
 // Table "Triangles", BVH_RECORD_STRIDE elements a record: one or two triangles. xyz of element i is corner r_i (float
-// bits). The first triangle is r_0 r_1 r_2, the second, across their common edge, r_3 r_2 r_1; there is none where r_3 is
-// r_1. Each begins with one of its own vertices: r_0 is vertex `turn` of the first triangle, r_3 of the second.
+// bits). The first triangle is r_0 r_1 r_2, the second, across their common edge, r_3 r_2 r_1; there is none where r_3
+// is r_1. Each begins with one of its own vertices: r_0 is vertex `turn` of the first triangle, r_3 of the second.
 //   0: w    index of the first triangle, with BVH_ALPHA_FLAG where its alpha must be asked: such a one is alone
 //   1: w    index of the second triangle
 //   2: w    turn of the first triangle, 0 to 2
