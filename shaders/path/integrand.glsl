@@ -6,9 +6,7 @@
 
 #include "restir/reservoir.glsl"
 
-#ifndef VISIT_ASKS
-#define VISIT_ASKS (SHIFT_MAP != SHIFT_REPLAY)
-#endif
+#define DEFERS_SHADOW_RAYS
 #include "lib/loop.glsl"
 #include "path/surfaces.glsl"
 #include "path/walk.glsl"
@@ -73,10 +71,53 @@ PathSample moving[MAX_RESERVOIRS];
 vec3 arrived[MAX_RESERVOIRS];
 uint outcome[MAX_RESERVOIRS]; // SHIFT_*
 uint open = 0u;               // bit c: reservoir c of the group is still under way
-uint joined = 0u;             // bit c: was joined by the last visit, whose ray may be blocked
 PathSeed groupSeed;
 uint joiningRays = 0u;
 uint shiftOutcomes[SHIFT_OUTCOMES] = uint[SHIFT_OUTCOMES](0u, 0u, 0u, 0u, 0u, 0u);
+
+// What has arrived counts only if a shadow ray is not blocked. They are traced after all walks, so that lanes trace theirs
+// together wherever on their walks they asked. Of the reservoirs that wait for the same ray the first one holds it.
+Ray shadow[MAX_RESERVOIRS]; // an array for each member: as one of structures rgb-restir's frames take 1.15 times the time
+uint shadowAlphaSeed[MAX_RESERVOIRS];
+uint waiting[MAX_RESERVOIRS];        // bit c: reservoir c waits for this ray; none: no ray
+uint blockedOutcome[MAX_RESERVOIRS]; // theirs if it is blocked
+
+void waitFor(ShadowRay ray, uint who, uint outcomeIfBlocked)
+{
+    bool isHeld = false;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (isHeld || (who & (1u << c)) == 0u) continue;
+        shadow[c] = ray.ray;
+        shadowAlphaSeed[c] = ray.alphaSeed;
+        waiting[c] = who;
+        blockedOutcome[c] = outcomeIfBlocked;
+        isHeld = true;
+    }
+}
+
+void traceShadows()
+{
+    uint left = 0u;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) left |= waiting[c] != 0u ? 1u << c : 0u;
+    LOOP_BEGIN(left != 0u)
+        ShadowRay ray = ShadowRay(shadow[0], shadowAlphaSeed[0]);
+        uint who = waiting[0];
+        uint what = blockedOutcome[0];
+        for (uint c = 1u; c < RESERVOIR_COUNT; ++c) {
+            if (uint(findLSB(left)) != c) continue;
+            ray = ShadowRay(shadow[c], shadowAlphaSeed[c]);
+            who = waiting[c];
+            what = blockedOutcome[c];
+        }
+        bool blocked = left != 0u && isBlocked(ray);
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            if (!blocked || (who & (1u << c)) == 0u) continue;
+            arrived[c] = vec3(0.0);
+            outcome[c] = what;
+        }
+        left &= left - 1u;
+    LOOP_END(left != 0u)
+}
 
 bool isOpen(uint c) { return (open & (1u << c)) != 0u; }
 
@@ -114,6 +155,13 @@ void emit(uint leaf, vec3 f, Ending e)
     }
 }
 
+void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay ray)
+{
+    uint before = open;
+    emit(leaf, f, e);
+    waitFor(ray, before & ~open, SHIFT_ENDED);
+}
+
 // What follows x_r when it scatters on, of path y: the last factors of f(T Y). `at` is the scattering at x_r.
 vec3 afterJoint(PathSample y, Bsdf at)
 {
@@ -129,17 +177,11 @@ vec3 afterJoint(PathSample y, Bsdf at)
     return f * r.suffix * weight;
 }
 
-void visitBlocked()
-{
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
-        if ((joined & (1u << c)) != 0u) settle(c, SHIFT_HIDDEN, vec3(0.0));
-}
-
 // Joins x = x_(r-1) to the reconnection vertices of all paths of the group that reconnect next.
 void join(Vertex x)
 {
-    joined = 0u;
     uint joining = 0u;
+    uint joined = 0u;
     Reconnection r;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!isOpen(c) || moving[c].joint != x.k + 1u) continue;
@@ -159,11 +201,6 @@ void join(Vertex x)
         float pdf;
         vec3 f = evaluate(x.bsdf, direction * x.bsdf.frame, direction, pdf);
         bool scatters = f != vec3(0.0);
-        if (scatters && joinsLight(x.k + 1u, x.s, distance)) {
-            ++joiningRays;
-            visitRay = ShadowRay(true, infinite, at.position, at.geometricNormal, direction,
-                                 pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w);
-        }
         // x_r as a light, and as a surface that scatters on: the same for all paths, evaluated once.
         vec4 environment = loadEnvironment(direction);
         vec3 radiance = infinite ? environment.rgb : at.emission;
@@ -182,7 +219,12 @@ void join(Vertex x)
             if (joinable && scatters && (toLight || !endsHere))
                 moved = prefix * (toLight ? asLight : afterJoint(moving[c], onward));
             settle(c, !joinable ? SHIFT_NOT_JOINABLE : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
-            joined |= joinable ? 1u << c : 0u;
+            joined |= moved != vec3(0.0) ? 1u << c : 0u;
+        }
+        if (joined != 0u) {
+            ++joiningRays;
+            waitFor(shadowRay(x.s, infinite, at.position, at.geometricNormal, direction, pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w),
+                    joined, SHIFT_HIDDEN);
         }
     }
 }
@@ -213,6 +255,15 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         }
         left |= 1u << c;
     }
+    uint all = left;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        arrived[c] = vec3(0.0);
+        outcome[c] = SHIFT_ENDED;
+        waiting[c] = 0u;
+        shadow[c] = Ray(vec3(0.0), vec3(0.0), 0.0);
+        shadowAlphaSeed[c] = 0u;
+        blockedOutcome[c] = 0u;
+    }
     Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
     Bsdf firstBsdf = makeBsdf(first, to.wo);
     LOOP_BEGIN(left != 0u)
@@ -223,17 +274,14 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
             if ((left & (1u << c)) != 0u && moving[c].seed == groupSeed) group |= 1u << c;
         left &= ~group;
         open = group;
-        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            arrived[c] = vec3(0.0);
-            outcome[c] = SHIFT_ENDED;
-        }
         walk(first, firstBsdf, to.wo, groupSeed);
-        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            if ((group & (1u << c)) == 0u) continue;
-            f[c] = finiteOrCounted(arrived[c], STAGE);
-            for (uint i = 0u; i < SHIFT_OUTCOMES; ++i) shiftOutcomes[i] += outcome[c] == i ? 1u : 0u; // no indexed store
-        }
     LOOP_END(left != 0u)
+    traceShadows();
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if ((all & (1u << c)) == 0u) continue;
+        f[c] = finiteOrCounted(arrived[c], STAGE);
+        for (uint i = 0u; i < SHIFT_OUTCOMES; ++i) shiftOutcomes[i] += outcome[c] == i ? 1u : 0u; // no indexed store
+    }
 }
 
 void countShifts()

@@ -9,12 +9,6 @@
 #include "scene/camera.glsl"
 #include "scene/lights.glsl"
 
-#ifdef VISIT_ASKS    // may visit() ask for a shadow ray, `visitRay`?
-void visitBlocked(); // it has, and something stands in its way
-#else
-#define VISIT_ASKS false
-void visitBlocked() {}
-#endif
 #ifndef FIRST_VERTEX
 #define FIRST_VERTEX 1u // k of the vertex that a walk starts from
 #endif
@@ -51,23 +45,17 @@ struct Ending {
     float lightPdf; // of next-event estimation, solid angle at x_k; 0 where it cannot find this light; -1: a Dirac light
 };
 
-// From x_k: to a target, or to infinity.
 struct ShadowRay {
-    bool asked;
-    bool infinite;
-    vec3 target;
-    vec3 targetNormal; // 0: the target has none
-    vec3 direction;    // unit
+    Ray ray;
     uint alphaSeed;
 };
-const ShadowRay NO_RAY = ShadowRay(false, false, vec3(0.0), vec3(0.0), vec3(0.0), 0u);
-ShadowRay visitRay; // traced in one loop with that of next-event estimation: traversal of masked lanes costs once
 
 bool visit(Vertex x);                    // x_k was reached; false: go no further
 bool wants(uint leaf);                   // is this path, by next-event estimation, of interest?
 bool goesOn(uint k);                     // is any path of interest that scatters at x_k or beyond?
 void emit(uint leaf, vec3 f, Ending e);  // a path that carries light. f is its MIS-weighted contribution over its density:
                                          // the integrand in primary sample space
+void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay shadow); // now, or after the walk: DEFERS_SHADOW_RAYS
 
 #include "path/trunk.glsl"
 
@@ -79,65 +67,47 @@ uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
     return randomBlock(seed, STREAM_PATH + 2u * k + purpose, uvec2(frame.key0, frame.key1));
 }
 
-// Does something stand in a shadow ray's way from surface s? Both ends are moved off their surfaces.
-bool blocked(Surface s, ShadowRay shadow)
+// From surface s to a target, or in that direction to infinity. Both ends are moved off their surfaces; the target has none
+// where its normal is 0.
+ShadowRay shadowRay(Surface s, bool infinite, vec3 target, vec3 targetNormal, vec3 direction, uint alphaSeed)
 {
-    vec3 origin = offsetOrigin(s.position, s.geometricNormal, shadow.direction);
-    vec3 end = shadow.targetNormal == vec3(0.0) ? shadow.target
-                                                : offsetOrigin(shadow.target, shadow.targetNormal, -shadow.direction);
+    vec3 origin = offsetOrigin(s.position, s.geometricNormal, direction);
+    vec3 end = targetNormal == vec3(0.0) ? target : offsetOrigin(target, targetNormal, -direction);
     vec3 d = end - origin;
     float distance = length(d);
-    Ray ray = shadow.infinite ? Ray(origin, shadow.direction, RAY_MAX) : Ray(origin, d / distance, distance);
-    return ray.tMax > 0.0 && occluded(ray, shadow.alphaSeed); // traversal is compiled once
+    return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance), alphaSeed);
 }
 
+bool isBlocked(ShadowRay shadow) { return shadow.ray.tMax > 0.0 && occluded(shadow.ray, shadow.alphaSeed); }
+
+#ifndef DEFERS_SHADOW_RAYS
+void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay shadow)
+{
+    if (!isBlocked(shadow)) emit(leaf, f, e);
+}
+#endif
+
 // Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight times f L / p_N, without 0/0.
-void drawLight(Vertex x, PathSeed seed, out Ending e, out vec3 contribution, out ShadowRay shadow)
+void emitByLight(Vertex x, PathSeed seed)
 {
     uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);
     LightSample light = sampleLight(random, x.s.position);
     float scatterPdf;
     vec3 f = evaluate(x.bsdf, light.direction * x.bsdf.frame, light.direction, scatterPdf);
     float density = light.dirac ? light.pdf : light.pdf + scatterPdf;
-    e = Ending(light.direction, light.radiance, f * light.radiance / density, light.pdf);
+    Ending e = Ending(light.direction, light.radiance, f * light.radiance / density, light.pdf);
     if (light.dirac) {
         e.radiance /= light.pdf;
         e.lightPdf = -1.0;
     }
-    contribution = x.throughput * e.weighted;
-    shadow = ShadowRay(contribution != vec3(0.0), light.infinite, light.target, light.normal, light.direction, random.w);
+    vec3 contribution = x.throughput * e.weighted;
+    if (contribution == vec3(0.0)) return;
+    ++shadowRays;
+    emitUnlessBlocked(makeLeaf(x.k, BY_LIGHT), contribution, e,
+                      shadowRay(x.s, light.infinite, light.target, light.normal, light.direction, random.w));
 }
 
-// Settles what ends at x_k. False: go no further.
-bool arrive(Vertex x, PathSeed seed)
-{
-    visitRay = NO_RAY;
-    bool goes = visit(x);
-    Ending e = Ending(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    vec3 contribution = vec3(0.0);
-    ShadowRay lightRay = NO_RAY;
-    if (goes && wants(makeLeaf(x.k, BY_LIGHT))) drawLight(x, seed, e, contribution, lightRay);
-    shadowRays += lightRay.asked ? 1u : 0u;
-    bool visitIsBlocked = false;
-    bool lightIsBlocked = false;
-    if (VISIT_ASKS) {
-        uint left = (visitRay.asked ? 1u : 0u) | (lightRay.asked ? 2u : 0u);
-        LOOP_BEGIN(left != 0u)
-            bool ofVisit = (left & 1u) != 0u;
-            bool isBlocked = left != 0u && blocked(x.s, ofVisit ? visitRay : lightRay);
-            visitIsBlocked = visitIsBlocked || (ofVisit && isBlocked);
-            lightIsBlocked = lightIsBlocked || (!ofVisit && isBlocked);
-            left &= left - 1u;
-        LOOP_END(left != 0u)
-    } else if (lightRay.asked) {
-        lightIsBlocked = blocked(x.s, lightRay);
-    }
-    if (visitIsBlocked) visitBlocked();
-    if (lightRay.asked && !lightIsBlocked) emit(makeLeaf(x.k, BY_LIGHT), contribution, e);
-    return goes && goesOn(x.k);
-}
-
-// Surface s, seen from direction wo, is the first vertex, x_1 of a whole path.
+// Surface s is the first vertex, x_1 of a whole path, seen from direction wo.
 void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
 {
     if (MAX_BOUNCES == 0u) return;
@@ -148,7 +118,9 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
     x.throughput = vec3(1.0);
     x.k = FIRST_VERTEX;
     LOOP_BEGIN(x.k <= MAX_BOUNCES)
-        if (absorbs(x.bsdf) || !arrive(x, seed)) return;
+        if (absorbs(x.bsdf) || !visit(x)) return;
+        if (wants(makeLeaf(x.k, BY_LIGHT))) emitByLight(x, seed);
+        if (!goesOn(x.k)) return;
 
         uvec4 random = pathRandom(seed, x.k, PURPOSE_SCATTER);
         Segment to;

@@ -9,7 +9,7 @@ layout(set = SET_PASS, binding = 1, std430) readonly buffer Paths { OfferedPath 
 layout(set = SET_PASS, binding = 2, std430) readonly buffer Destinations { uint destinations[]; }; // pixels
 layout(set = SET_PASS, binding = 3, std430) writeonly buffer ShiftedPaths { ShiftedPath shiftedPaths[]; };
 
-#define VISIT_ASKS true
+#define DEFERS_SHADOW_RAYS
 #include "path/walk.glsl"
 #define visit shiftVisits // between the walk and the shift stand the functions below
 #define goesOn shiftGoesOn
