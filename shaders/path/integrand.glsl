@@ -267,8 +267,9 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
     Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
     Bsdf firstBsdf = makeBsdf(first, to.wo);
     LOOP_BEGIN(left != 0u)
-        for (uint c = RESERVOIR_COUNT; c-- > 0u;)
-            if ((left & (1u << c)) != 0u) groupSeed = moving[c].seed;
+        groupSeed = moving[0].seed; // counting upwards: drivers unroll no other loop, and indexed arrays are memory
+        for (uint c = 1u; c < RESERVOIR_COUNT; ++c)
+            if (uint(findLSB(left)) == c) groupSeed = moving[c].seed;
         uint group = 0u;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
             if ((left & (1u << c)) != 0u && moving[c].seed == groupSeed) group |= 1u << c;
