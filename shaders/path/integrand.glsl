@@ -77,43 +77,33 @@ uint shiftOutcomes[SHIFT_OUTCOMES] = uint[SHIFT_OUTCOMES](0u, 0u, 0u, 0u, 0u, 0u
 
 // What has arrived counts only if a shadow ray is not blocked. They are traced after all walks, so that lanes trace theirs
 // together wherever on their walks they asked. Of the reservoirs that wait for the same ray the first one holds it.
-Ray shadow[MAX_RESERVOIRS]; // an array for each member: as one of structures rgb-restir's frames take 1.15 times the time
-uint shadowAlphaSeed[MAX_RESERVOIRS];
-uint waiting[MAX_RESERVOIRS];        // bit c: reservoir c waits for this ray; none: no ray
-uint blockedOutcome[MAX_RESERVOIRS]; // theirs if it is blocked
+struct Pending {
+    ShadowRay ray;
+    uint who;     // bit c: reservoir c waits for it; none: no ray
+    uint outcome; // theirs if it is blocked
+};
+const Pending NOTHING_PENDING = Pending(ShadowRay(Ray(vec3(0.0), vec3(0.0), 0.0), 0u), 0u, SHIFT_ENDED);
+Pending pending[MAX_RESERVOIRS];
 
 void waitFor(ShadowRay ray, uint who, uint outcomeIfBlocked)
 {
-    bool isHeld = false;
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        if (isHeld || (who & (1u << c)) == 0u) continue;
-        shadow[c] = ray.ray;
-        shadowAlphaSeed[c] = ray.alphaSeed;
-        waiting[c] = who;
-        blockedOutcome[c] = outcomeIfBlocked;
-        isHeld = true;
-    }
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+        if (who != 0u && uint(findLSB(who)) == c) pending[c] = Pending(ray, who, outcomeIfBlocked);
 }
 
-void traceShadows()
+void tracePending()
 {
     uint left = 0u;
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) left |= waiting[c] != 0u ? 1u << c : 0u;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) left |= pending[c].who != 0u ? 1u << c : 0u;
     LOOP_BEGIN(left != 0u)
-        ShadowRay ray = ShadowRay(shadow[0], shadowAlphaSeed[0]);
-        uint who = waiting[0];
-        uint what = blockedOutcome[0];
-        for (uint c = 1u; c < RESERVOIR_COUNT; ++c) {
-            if (uint(findLSB(left)) != c) continue;
-            ray = ShadowRay(shadow[c], shadowAlphaSeed[c]);
-            who = waiting[c];
-            what = blockedOutcome[c];
-        }
-        bool blocked = left != 0u && isBlocked(ray);
+        Pending next = pending[0];
+        for (uint c = 1u; c < RESERVOIR_COUNT; ++c)
+            if (uint(findLSB(left)) == c) next = pending[c];
+        bool blocked = left != 0u && isBlocked(next.ray);
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            if (!blocked || (who & (1u << c)) == 0u) continue;
+            if (!blocked || (next.who & (1u << c)) == 0u) continue;
             arrived[c] = vec3(0.0);
-            outcome[c] = what;
+            outcome[c] = next.outcome;
         }
         left &= left - 1u;
     LOOP_END(left != 0u)
@@ -259,10 +249,7 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         arrived[c] = vec3(0.0);
         outcome[c] = SHIFT_ENDED;
-        waiting[c] = 0u;
-        shadow[c] = Ray(vec3(0.0), vec3(0.0), 0.0);
-        shadowAlphaSeed[c] = 0u;
-        blockedOutcome[c] = 0u;
+        pending[c] = NOTHING_PENDING;
     }
     Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
     Bsdf firstBsdf = makeBsdf(first, to.wo);
@@ -277,7 +264,7 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         open = group;
         walk(first, firstBsdf, to.wo, groupSeed);
     LOOP_END(left != 0u)
-    traceShadows();
+    tracePending();
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if ((all & (1u << c)) == 0u) continue;
         f[c] = finiteOrCounted(arrived[c], STAGE);
