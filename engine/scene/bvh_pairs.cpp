@@ -1,6 +1,7 @@
 #include "engine/scene/bvh_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <tuple>
 
@@ -10,7 +11,8 @@ namespace scene
 namespace
 {
 
-constexpr uint32_t ROUNDS = 8; // after these, few of the pairs that could be are missing
+constexpr uint32_t ROUNDS = 8;          // after these, few of the pairs that could be are missing
+constexpr uint32_t LONGEST_SEARCH = 64; // triangles around a vertex: more only where very many are the same
 
 struct Partner {
     uint32_t triangle = NONE;
@@ -53,10 +55,14 @@ class Pairing
     }
 
   private:
-    // Numbers for vertices, equal where positions are.
+    // Numbers for vertices, equal where positions are. By their bits, which have an order also where they are no
+    // numbers.
     static std::vector<uint32_t> vertexNumbers(std::span<const glm::vec3> positions)
     {
-        const auto key = [&](uint32_t i) { return std::tuple(positions[i].x, positions[i].y, positions[i].z); };
+        const auto key = [&](uint32_t i) {
+            const glm::vec3 p = positions[i] + 0.0f; // -0 becomes 0
+            return std::tuple(std::bit_cast<uint32_t>(p.x), std::bit_cast<uint32_t>(p.y), std::bit_cast<uint32_t>(p.z));
+        };
         std::vector<uint32_t> order(positions.size());
         std::iota(order.begin(), order.end(), 0u);
         std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
@@ -104,8 +110,10 @@ class Pairing
         std::tuple<float, uint32_t> least = {1.0f, 0};
         for (uint32_t turn = 0; turn < 3; ++turn) {
             const uint32_t from = vertex(triangle, turn + 1), to = vertex(triangle, turn + 2);
-            for (uint32_t i = begin_[from]; i < begin_[from + 1]; ++i) {
-                const uint32_t other = around_[i];
+            const auto countAt = [&](uint32_t v) { return begin_[v + 1] - begin_[v]; };
+            const uint32_t searched = countAt(from) < countAt(to) ? from : to;
+            for (uint32_t i = 0; i < std::min(countAt(searched), LONGEST_SEARCH); ++i) {
+                const uint32_t other = around_[begin_[searched] + i];
                 if (taken_[other] || other == triangle) continue;
                 for (uint32_t otherTurn = 0; otherTurn < 3; ++otherTurn) {
                     if (vertex(other, otherTurn + 1) != to || vertex(other, otherTurn + 2) != from) continue;

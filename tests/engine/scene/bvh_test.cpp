@@ -361,6 +361,23 @@ TEST(Bvh, MarksTrianglesThatNeedAnAlphaTest)
     }
 }
 
+// What a search over all triangles around a vertex would take hours for.
+TEST(Bvh, OfManyTrianglesAroundAVertexIsBuiltSoon)
+{
+    constexpr uint32_t COUNT = 300000;
+    Mesh fan;
+    fan.positions = {{0, 0, 0}};
+    for (uint32_t i = 0; i <= COUNT; ++i) {
+        const double angle = 6.28 * i / COUNT;
+        fan.positions.push_back({float(std::cos(angle)), float(std::sin(angle)), 0});
+        if (i > 0) fan.triangles.push_back({.vertices = {0, i, i + 1}});
+    }
+    EXPECT_LT(fan.build().stats.triangleRecords, COUNT);
+    Mesh same;
+    for (uint32_t i = 0; i < COUNT; ++i) same.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    EXPECT_GE(same.build().stats.triangleRecords, COUNT);
+}
+
 TEST(Bvh, OfTrianglesThatCannotBeToldApartStaysShallow)
 {
     Mesh mesh;
