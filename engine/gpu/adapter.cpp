@@ -15,6 +15,7 @@ namespace
 {
 
 constexpr uint32_t ENOUGH_TEXELS = 1u << 24; // fewer: tables are storage buffers
+constexpr uint32_t ENOUGH_TABLES = 16;       // of a stage: likewise; texel buffers count as storage images
 
 // Whatever the device offers, the program stays inside what WebGPU could.
 constexpr uint32_t PORTABLE_STORAGE_BUFFERS = 10; // per stage
@@ -38,6 +39,7 @@ Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, u
     VkFormatProperties format = {};
     vkGetPhysicalDeviceFormatProperties(device, TABLE_FORMAT, &format);
     const bool texel = limits.maxTexelBufferElements >= ENOUGH_TEXELS &&
+                       limits.maxPerStageDescriptorStorageImages >= ENOUGH_TABLES &&
                        (format.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT) != 0;
 
     VkPhysicalDeviceMemoryProperties memory = {};
