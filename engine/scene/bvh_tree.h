@@ -73,8 +73,9 @@ struct WideTree {
     uint32_t levels = 0;
 };
 
-// Puts triangles together whose common box is smaller than both of theirs: half the records and nodes, and a test of
-// both costs less than two. `usable`: those to be in the tree; each is in one pair. Alpha-tested ones stay alone.
+// Puts triangles together whose common box is smaller than both of theirs: half the records, three quarters of the
+// nodes, and a test of both has less to do than two. `usable`: those to be in the tree; each is in one pair.
+// Alpha-tested ones stay alone.
 std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable);
 
 // Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large

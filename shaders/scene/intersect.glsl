@@ -151,11 +151,6 @@ uint inOrder(uint slots, uint order)
     return (order & 4u) != 0u ? z : slots;
 }
 
-uint bitsBelow(uint bit)
-{
-    return (1u << bit) - 1u;
-}
-
 // A triangle in the ray's frame.
 struct TriangleMeeting {
     bool met;     // by the ray's line

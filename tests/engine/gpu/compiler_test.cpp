@@ -75,6 +75,26 @@ TEST_F(ShaderFolder, ACompileErrorSaysFileAndLine)
 }
 
 // Ten storage buffers a stage, as in WebGPU; tables apart.
+// A table is a texel buffer that is loaded as an image and never written; no other image is known.
+TEST_F(ShaderFolder, OnlyTablesMayBeImages)
+{
+    const auto reflect = [&](const std::string& image, const std::string& use) {
+        write("image.comp", "#version 460\nlayout(local_size_x = 1) in;\n"
+                            "layout(set = 0, binding = 0, std430) buffer Values { uint value; };\n" +
+                                image + " Image;\nvoid main() { " + use + " }\n");
+        return gpu::reflect(gpu::compileShader(folder_ / "image.comp", folder_, true), "image", true, {});
+    };
+    const std::string layout = "layout(set = 0, binding = 1, rgba32ui) uniform ";
+    const std::string load = "value = imageLoad(Image, 0).x;";
+    const gpu::Reflection table = reflect(layout + "readonly uimageBuffer", load);
+    ASSERT_EQ(table.bindings.size(), 2u);
+    EXPECT_EQ(table.bindings[1].kind, gpu::Binding::Kind::Table);
+    EXPECT_THROW(reflect(layout + "uimageBuffer", load + " imageStore(Image, 0, uvec4(1));"), Error);
+    EXPECT_THROW(reflect(layout + "readonly uimage1D", load), Error);
+    EXPECT_THROW(reflect("layout(set = 0, binding = 1) uniform utextureBuffer", "value = texelFetch(Image, 0).x;"),
+                 Error);
+}
+
 TEST_F(ShaderFolder, TooManyStorageBuffersAreAnError)
 {
     gpu::Device device = openDevice({.shaderDirectory = folder_.string()});
