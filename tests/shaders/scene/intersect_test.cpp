@@ -22,11 +22,12 @@ namespace
 // ------------------------------------------------------------------------------------------------- agreement with
 // Embree
 
-// One triangle met by one ray in float64: t, and how far inside it the ray passes (smallest barycentric, negative
-// outside).
+// One triangle met by one ray in float64: t, and how far inside it the ray passes (negative: outside), as the smallest
+// barycentric and as the distance from the nearest edge.
 struct Exact {
     double t = 0;
     double inside = 0;
+    double fromEdge = 0;
 };
 
 Exact meet(const Mesh& mesh, uint32_t triangle, const TestRay& ray)
@@ -37,24 +38,50 @@ Exact meet(const Mesh& mesh, uint32_t triangle, const TestRay& ray)
     const glm::dvec3 p = glm::cross(direction, e2), q = glm::cross(s, e1);
     const double determinant = glm::dot(e1, p);
     const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
-    return {glm::dot(e2, q) / determinant, std::min({u, v, 1 - u - v})};
+    const double area = glm::length(glm::cross(e1, e2)); // twice
+    return {.t = glm::dot(e2, q) / determinant,
+            .inside = std::min({u, v, 1 - u - v}),
+            .fromEdge =
+                area * std::min({u / glm::length(e2), v / glm::length(e1), (1 - u - v) / glm::length(e2 - e1)})};
 }
 
 // Why two tracers may see different triangles: the nearer one's edge is so near that either answer is right to float
-// precision, or both are met at the same distance.
-enum class Reason { Edge, Tie, None };
+// precision, or both are met at the same distance, or the nearer one where the ray begins, before or behind.
+enum class Reason { Edge, Tie, Origin, None };
 
-Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs)
+// `rounding`: of coordinates, as a length.
+Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs, double rounding)
 {
-    constexpr double EDGE = 1e-4; // in barycentrics
+    const auto nearEdge = [&](const Exact& e) {
+        return std::abs(e.inside) <= 1e-4 || std::abs(e.fromEdge) <= rounding;
+    };
     const bool weHit = ours.isHit(), theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
-    const Exact our = weHit ? meet(mesh, ours.triangle(), ray) : Exact{std::numeric_limits<double>::infinity(), 0};
-    const Exact their =
-        theyHit ? meet(mesh, theirs.hit.primID, ray) : Exact{std::numeric_limits<double>::infinity(), 0};
-    if (weHit && our.inside < -EDGE) return Reason::None; // we claim a hit that is none
+    const Exact none = {.t = std::numeric_limits<double>::infinity()};
+    const Exact our = weHit ? meet(mesh, ours.triangle(), ray) : none;
+    const Exact their = theyHit ? meet(mesh, theirs.hit.primID, ray) : none;
+    if (weHit && our.inside < 0 && !nearEdge(our)) return Reason::None; // we claim a hit that is none
     if (weHit && theyHit && std::abs(our.t - their.t) <= 1e-5 * their.t) return Reason::Tie;
     const Exact& nearer = our.t < their.t ? our : their;
-    return std::abs(nearer.inside) <= EDGE ? Reason::Edge : Reason::None;
+    if (std::abs(nearer.t) <= rounding) return Reason::Origin;
+    return nearEdge(nearer) ? Reason::Edge : Reason::None;
+}
+
+// A ray that nothing explains: all that it takes to look into it.
+void describe(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs)
+{
+    fmt::print("unexplained: from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})\n", ray.origin.x,
+               ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z);
+    const auto hit = [&](const char* whose, uint32_t triangle, float t) {
+        if (triangle == NO_HIT) {
+            fmt::print("  {}: none\n", whose);
+            return;
+        }
+        const Exact exact = meet(mesh, triangle, ray);
+        fmt::print("  {}: triangle {} at t {:.9g}; exactly {:.9g}, inside by {:.3g}, from an edge {:.3g}\n", whose,
+                   triangle, t, exact.t, exact.inside, exact.fromEdge);
+    };
+    hit("ours", ours.triangle(), ours.t);
+    hit("Embree's", theirs.hit.primID, theirs.ray.tfar);
 }
 
 // How far the point that a hit's barycentrics name is from the ray.
@@ -103,6 +130,7 @@ class IntersectAgreement : public Intersect
         for (const glm::vec3& p : scene.positions)
             magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 
+        const double rounding = 1e-6 * magnitude;
         size_t hitCount = 0, astray = 0, edges = 0, ties = 0, roundings = 0, unexplained = 0, occlusionDiffers = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             const RTCRayHit theirs = embree.intersect(rays[i]);
@@ -116,14 +144,19 @@ class IntersectAgreement : public Intersect
                 const double difference = std::abs(double(hits[i].t) - theirs.ray.tfar);
                 if (difference <= 1e-4 * theirs.ray.tfar) continue;
                 // A hit so near that the rounding of coordinates is a larger part of t.
-                (difference <= 1e-6 * magnitude ? roundings : unexplained) += 1;
-                continue;
+                if (difference <= rounding) {
+                    ++roundings;
+                    continue;
+                }
+            } else {
+                const Reason reason = reasonFor(mesh, rays[i], hits[i], theirs, rounding);
+                edges += reason == Reason::Edge ? 1 : 0;
+                ties += reason == Reason::Tie ? 1 : 0;
+                roundings += reason == Reason::Origin ? 1 : 0;
+                if (reason != Reason::None) continue;
             }
-            switch (reasonFor(mesh, rays[i], hits[i], theirs)) {
-            case Reason::Edge: ++edges; break;
-            case Reason::Tie: ++ties; break;
-            case Reason::None: ++unexplained; break;
-            }
+            ++unexplained;
+            describe(mesh, rays[i], hits[i], theirs);
         }
         const double agreement = 1.0 - double(edges + ties + roundings + unexplained) / double(rays.size());
         fmt::print("{} rays, {} hits, agreement {:.6f}; differing: {} at edges, {} ties, {} by rounding at the origin, "
