@@ -23,7 +23,7 @@ namespace
 // Embree
 
 // One triangle met by one ray in float64: t, and how far inside it the ray passes (negative: outside), as the smallest
-// barycentric and as the distance from the nearest edge.
+// barycentric and as the distance of the ray from the nearest edge.
 struct Exact {
     double t = 0;
     double inside = 0;
@@ -38,22 +38,27 @@ Exact meet(const Mesh& mesh, uint32_t triangle, const TestRay& ray)
     const glm::dvec3 p = glm::cross(direction, e2), q = glm::cross(s, e1);
     const double determinant = glm::dot(e1, p);
     const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
-    const double area = glm::length(glm::cross(e1, e2)); // twice
+    const auto distance = [&](double weight, const glm::dvec3& edge) {
+        return weight * std::abs(determinant) / glm::length(glm::cross(direction, edge));
+    };
     return {.t = glm::dot(e2, q) / determinant,
             .inside = std::min({u, v, 1 - u - v}),
-            .fromEdge =
-                area * std::min({u / glm::length(e2), v / glm::length(e1), (1 - u - v) / glm::length(e2 - e1)})};
+            .fromEdge = std::min({distance(u, e2), distance(v, e1), distance(1 - u - v, e2 - e1)})};
 }
 
 // Why two tracers may see different triangles: the nearer one's edge is so near that either answer is right to float
 // precision, or both are met at the same distance, or the nearer one where the ray begins, before or behind.
 enum class Reason { Edge, Tie, Origin, None };
 
-// `rounding`: of coordinates, as a length.
-Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs, double rounding)
+Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRayHit& theirs)
 {
+    // What rounding may move a point at distance t along the ray: a few units in the last place of its coordinates.
+    const glm::vec3 origin = glm::abs(ray.origin);
+    const auto rounding = [&](const Exact& e) {
+        return std::ldexp(std::max({origin.x, origin.y, origin.z}) + std::abs(e.t), -22);
+    };
     const auto nearEdge = [&](const Exact& e) {
-        return std::abs(e.inside) <= 1e-4 || std::abs(e.fromEdge) <= rounding;
+        return std::abs(e.inside) <= 1e-4 || std::abs(e.fromEdge) <= rounding(e);
     };
     const bool weHit = ours.isHit(), theyHit = theirs.hit.primID != RTC_INVALID_GEOMETRY_ID;
     const Exact none = {.t = std::numeric_limits<double>::infinity()};
@@ -62,7 +67,7 @@ Reason reasonFor(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RT
     if (weHit && our.inside < 0 && !nearEdge(our)) return Reason::None; // we claim a hit that is none
     if (weHit && theyHit && std::abs(our.t - their.t) <= 1e-5 * their.t) return Reason::Tie;
     const Exact& nearer = our.t < their.t ? our : their;
-    if (std::abs(nearer.t) <= rounding) return Reason::Origin;
+    if (std::abs(nearer.t) <= rounding(nearer)) return Reason::Origin;
     return nearEdge(nearer) ? Reason::Edge : Reason::None;
 }
 
@@ -81,7 +86,7 @@ void describe(const Mesh& mesh, const TestRay& ray, const Hit& ours, const RTCRa
                    triangle, t, exact.t, exact.inside, exact.fromEdge);
     };
     hit("ours", ours.triangle(), ours.t);
-    hit("Embree's", theirs.hit.primID, theirs.ray.tfar);
+    hit("Embree's", theirs.hit.primID == RTC_INVALID_GEOMETRY_ID ? NO_HIT : theirs.hit.primID, theirs.ray.tfar);
 }
 
 // How far the point that a hit's barycentrics name is from the ray.
@@ -130,7 +135,6 @@ class IntersectAgreement : public Intersect
         for (const glm::vec3& p : scene.positions)
             magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 
-        const double rounding = 1e-6 * magnitude;
         size_t hitCount = 0, astray = 0, edges = 0, ties = 0, roundings = 0, unexplained = 0, occlusionDiffers = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             const RTCRayHit theirs = embree.intersect(rays[i]);
@@ -144,12 +148,12 @@ class IntersectAgreement : public Intersect
                 const double difference = std::abs(double(hits[i].t) - theirs.ray.tfar);
                 if (difference <= 1e-4 * theirs.ray.tfar) continue;
                 // A hit so near that the rounding of coordinates is a larger part of t.
-                if (difference <= rounding) {
+                if (difference <= 1e-6 * magnitude) {
                     ++roundings;
                     continue;
                 }
             } else {
-                const Reason reason = reasonFor(mesh, rays[i], hits[i], theirs, rounding);
+                const Reason reason = reasonFor(mesh, rays[i], hits[i], theirs);
                 edges += reason == Reason::Edge ? 1 : 0;
                 ties += reason == Reason::Tie ? 1 : 0;
                 roundings += reason == Reason::Origin ? 1 : 0;
