@@ -225,7 +225,7 @@ std::vector<std::pair<std::string, Variant>> Renderer::stagesFor(const Settings&
     list.emplace_back("canonical", variant);
     if (settings.temporal) {
         list.emplace_back("temporal", variant);
-        list.back().second.SAME_VIEW = !cameraMoves && settings.pixelFilter == PixelFilter::Center;
+        list.back().second.SAME_VIEW = !cameraMoves && viewRepeats(settings);
     }
     if (settings.spatial > 0) list.emplace_back("spatial_trace", variant);
     list.emplace_back("spatial_gather", variant);
@@ -251,16 +251,23 @@ std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Varian
     return stage;
 }
 
-// Is each camera ray of this frame the same as from there?
+// Does every pixel see the same point in each frame while the camera rests? This alone lets frames take over what an
+// earlier one saw: not where rays go anywhere through the pixel, nor where surfaces exist by chance.
+bool Renderer::viewRepeats(const Settings& settings) const
+{
+    return featureSet_ == scene::FeatureSet::Needed && settings.pixelFilter == PixelFilter::Center &&
+           !sceneFeatures_.blend;
+}
+
+// Does every pixel of this frame see the same point as from there?
 bool Renderer::seesTheSame(const std::optional<shared::CameraUniform>& from) const
 {
     using Bits = std::array<uint32_t, sizeof(shared::CameraUniform) / sizeof(uint32_t)>;
-    return featureSet_ == scene::FeatureSet::Needed && settings_.pixelFilter == PixelFilter::Center && from &&
-           std::bit_cast<Bits>(frame_.camera) == std::bit_cast<Bits>(*from);
+    return viewRepeats(settings_) && from && std::bit_cast<Bits>(frame_.camera) == std::bit_cast<Bits>(*from);
 }
 
-// Compiled when first needed. While the camera rests each camera ray sees the same point again: shifts between the two
-// frames are identities, and left out.
+// Compiled when first needed. Where each pixel sees the same point again, shifts between the two frames are identities,
+// and left out.
 const Stage& Renderer::temporal()
 {
     const bool resting = seesTheSame(frame_.previousCamera);
@@ -310,7 +317,7 @@ void Renderer::renderFrame()
 {
     frame_.frame = uint32_t(frameCount_);
     frame_.previousSlice = frame_.slice;
-    hitsKnown_ = seesTheSame(hitsFrom_) && !variant_.HAS_ALPHA; // which lets rays pass by chance
+    hitsKnown_ = seesTheSame(hitsFrom_);
     if (!hitsKnown_) frame_.slice = 1 - frame_.slice;
     hitsFrom_ = frame_.camera;
     device_.queue().writeValue(frameUniform_, frame_);

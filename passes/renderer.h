@@ -107,6 +107,7 @@ class Renderer
     void createBuffers();
     void createStages();
     const Stage& temporal();
+    bool viewRepeats(const Settings& settings) const;
     bool seesTheSame(const std::optional<shared::CameraUniform>& from) const;
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);

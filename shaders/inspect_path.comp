@@ -50,7 +50,7 @@ void addHit(Hit hit, vec3 direction)
 // As next-event estimation at the last point drew it.
 void addSampledLight()
 {
-    LightSample light = sampleLight(pathRandom(path.seed, scatteringsOf(path.leaf), PURPOSE_LIGHT), last.position);
+    LightSample light = sampleLight(pathRandom(path.seed, scatteringsOf(path.leaf), PURPOSE_LIGHT), last);
     addEnd(light.infinite, light.target, light.direction);
 }
 
@@ -85,8 +85,7 @@ bool join(out Surface s, out vec3 wo)
         addSampledLight();
         return false;
     }
-    Hit hit = closestHit(Ray(offsetOrigin(position, last.geometricNormal, r.direction), r.direction, RAY_MAX),
-                         pathRandom(path.seed, k, PURPOSE_SCATTER).w);
+    Hit hit = closestHit(Ray(departure(last, r.direction), r.direction, RAY_MAX), pathRandom(path.seed, k, PURPOSE_SCATTER).w);
     if (path.leaf == makeLeaf(k, BY_SCATTER)) addHit(hit, r.direction);
     if (path.leaf == makeLeaf(k, BY_SCATTER) || hit.triangle == NO_HIT) return false;
     wo = -r.direction;

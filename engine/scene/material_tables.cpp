@@ -135,6 +135,7 @@ class Builder
         SceneFeatures& f = tables_.features;
         f.unlit |= material.unlit;
         f.alpha |= material.alpha != Alpha::Opaque;
+        f.blend |= material.alpha == Alpha::Blend;
         f.vertexColors |= !scene_.colors.empty();
         noteTexture(material.baseColorTexture, f.baseColorTexture);
         noteTexture(material.normalTexture, f.normalMap);

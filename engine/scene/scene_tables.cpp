@@ -68,6 +68,7 @@ glm::uvec2 encodeColor(const glm::vec4& color)
 SceneFeatures everything()
 {
     return {.alpha = true,
+            .blend = true,
             .specular = true,
             .rough = true,
             .dirac = true,
@@ -98,6 +99,18 @@ uint32_t attributeRows(const SceneFeatures& features)
     return textured ? shared::ATTRIBUTE_ROWS_UV : shared::ATTRIBUTE_ROWS_BARE;
 }
 
+// The least barycentric weight of points that keep clear of the triangle's edges: by several times what rounding moves
+// the point, and rays that leave it (shaders/lib/offset.glsl).
+float clearance(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+    const double part = 1.0 / 524288; // 2^-19 of the coordinates
+    const glm::dvec3 sizes = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+    const double size = std::max({sizes.x, sizes.y, sizes.z});
+    const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    const double weight = part * size * longest / glm::length(glm::cross(b - a, c - a)); // over the smallest height
+    return weight < 1.0 / 3 ? static_cast<float>(weight) : 1.0f / 3;                     // also where it has no height
+}
+
 template <class T>
 T attributeOr(const std::vector<T>& values, uint32_t vertex, const T& missing)
 {
@@ -118,7 +131,7 @@ std::vector<glm::uvec4> packAttributes(const Scene& scene, const std::vector<glm
                 encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
         table.push_back(row(positions[a], triangle.material));
         table.push_back(row(positions[b], lightOfTriangle[t]));
-        table.push_back(row(positions[c], 0));
+        table.push_back(row(positions[c], bits(clearance(positions[a], positions[b], positions[c]))));
         table.emplace_back(octahedralEncode(scene.normals[a]), octahedralEncode(scene.normals[b]),
                            octahedralEncode(scene.normals[c]), tangents.z);
         if (rows == shared::ATTRIBUTE_ROWS_BARE) continue;

@@ -17,9 +17,10 @@
 namespace scene
 {
 
-// What occurs in a scene; the rest is left out of the shaders. Fields mirror shaders/shared/variant.h.
+// What occurs in a scene; the rest is left out of the shaders. Fields mirror shaders/shared/variant.h, but for blend.
 struct SceneFeatures {
     bool alpha = false;
+    bool blend = false; // surfaces that exist by chance: equal rays may meet others in another frame
     bool specular = false;
     bool rough = false;
     bool dirac = false;

@@ -27,7 +27,10 @@ bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission)
 {
     candidateSeed = seed;
     PrimaryHit hit = loadPrimaryHit(pixel);
-    if (hit.seen) walk(hit.s, hit.wo, seed);
+    if (hit.seen) {
+        footprint = footprintOf(frame.camera, hit.s.position, hit.s.geometricNormal, hit.wo);
+        walk(hit.s, hit.wo, seed);
+    }
     emission = hit.emission;
     return hit.seen;
 }

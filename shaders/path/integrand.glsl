@@ -19,6 +19,7 @@ struct Domain {
     vec3 position;
     vec3 normal; // geometric, on the camera's side
     vec3 wo;
+    float footprint; // trunk.glsl
 };
 
 Domain makeDomain(uint pixel, bool previous)
@@ -30,10 +31,13 @@ Domain makeDomain(uint pixel, bool previous)
     d.triangle = hit.x;
     d.barycentric = uintBitsToFloat(hit.yz);
     TriangleGeometry g = loadTriangle(d.triangle);
-    d.position = baryMix(g.p0, g.p1, g.p2, d.barycentric);
-    d.wo = previous ? towardsCamera(frame.previousCamera, d.position) : towardsCamera(frame.camera, d.position);
+    d.position = pointOn(g, d.barycentric);
+    CameraUniform camera = frame.camera;
+    if (previous) camera = frame.previousCamera;
+    d.wo = towardsCamera(camera, d.position);
     d.normal = normalize(g.areaNormal);
     if (dot(d.normal, d.wo) < 0.0) d.normal = -d.normal;
+    d.footprint = footprintOf(camera, d.position, d.normal, d.wo);
     return d;
 }
 
@@ -181,11 +185,12 @@ void join(Vertex x)
     if (joining != 0u) {
         bool infinite = HAS_ENVIRONMENT && r.triangle == NO_HIT;
         uint triangle = infinite ? 0u : r.triangle;
-        vec3 d = infinite ? r.direction : hitPosition(triangle, r.barycentric) - x.s.position;
+        vec3 position = hitPosition(triangle, r.barycentric);
+        vec3 origin = departure(x.s, infinite ? r.direction : position - x.s.position);
+        vec3 d = position - origin;
         float squared = dot(d, d);
         float distance = infinite ? RAY_MAX : sqrt(squared);
-        vec3 direction = infinite ? r.direction : d / distance;
-        if (!infinite && distance < JOIN_DISTANCE) direction = x.s.geometricNormal; // not joinable, and d / 0 is no direction
+        vec3 direction = infinite ? r.direction : squared > 0.0 ? d / distance : x.s.geometricNormal; // not joinable at 0
         Surface at = loadSurface(triangle, r.barycentric, -direction);
         float geometry = infinite ? 1.0 : abs(dot(at.geometricNormal, direction)) / squared;
         float pdf;
@@ -194,12 +199,12 @@ void join(Vertex x)
         // x_r as a light, and as a surface that scatters on: the same for all paths, evaluated once.
         vec4 environment = loadEnvironment(direction);
         vec3 radiance = infinite ? environment.rgb : at.emission;
-        float lightDensity = infinite ? environmentPdf(environment) : lightPdf(at, x.s.position, -direction);
+        float lightDensity = infinite ? environmentPdf(environment) : lightPdf(at, origin, direction);
         vec3 asLight = radiance == vec3(0.0) || !scatters ? vec3(0.0) : radiance * (pdf / (pdf + lightDensity));
         Bsdf onward = makeBsdf(at, -direction);
         bool endsHere = absorbs(onward);
-        bool lightJoins = joinsLight(x.k + 1u, x.s, distance);
-        bool surfaceJoins = joins(x.k + 1u, x.s, at, distance);
+        bool lightJoins = joinsLight(x.k + 1u, x.s, position, distance, pdf * geometry);
+        bool surfaceJoins = lightJoins && scattersWidely(at);
         vec3 prefix = x.throughput * f * geometry;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if ((joining & (1u << c)) == 0u) continue;
@@ -213,7 +218,8 @@ void join(Vertex x)
         }
         if (joined != 0u) {
             ++joiningRays;
-            waitFor(shadowRay(x.s, infinite, at.position, at.geometricNormal, direction, pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w),
+            waitFor(shadowRay(x.s, infinite, at.position, at.geometricNormal, at.offset, direction,
+                              pathRandom(groupSeed, x.k, PURPOSE_SCATTER).w),
                     joined, SHIFT_HIDDEN);
         }
     }
@@ -251,6 +257,7 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         outcome[c] = SHIFT_ENDED;
         pending[c] = NOTHING_PENDING;
     }
+    footprint = to.footprint;
     Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
     Bsdf firstBsdf = makeBsdf(first, to.wo);
     LOOP_BEGIN(left != 0u)

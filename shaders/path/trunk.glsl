@@ -14,7 +14,12 @@
 
 // Hybrid: below this GGX alpha a lobe is replayed. Reconnection alone joins all but perfect mirrors.
 const float JOIN_ALPHA = SHIFT_MAP == SHIFT_HYBRID ? 0.04 : DIRAC_ALPHA;
-const float JOIN_DISTANCE = SHIFT_MAP == SHIFT_HYBRID ? 0.01 : 9.5367431640625e-7; // scaled: parts of the scene's radius
+// Hybrid: x_(r-1) spreads its scattered rays around x_r over an area of 1 / arrival at least. Joined where it is smaller
+// than what the pixel's path sees of x_1, a path would change more by the shift than by being drawn anew. After Lin et
+// al., "ReSTIR PT Enhanced" (2026), section 4: 0.0002 of the sphere around x_1 that the camera lies on, as x_1 faces it.
+const float FOOTPRINT = 0.0002 * 4.0 * PI;
+// Reconnection alone: nearer than this part of their coordinates vertices have no direction left between them.
+const float JOIN_DISTANCE = 9.5367431640625e-7; // 2^-20
 
 struct Trunk {
     uint joint; // r; 0: none yet
@@ -36,6 +41,16 @@ struct LightJoint {
 };
 LightJoint lightJoint;
 
+// Of the domain that a walk is in: it depends on x_0 and x_1 alone. Set before the walk begins.
+float footprint = 0.0;
+
+float footprintOf(CameraUniform camera, vec3 position, vec3 normal, vec3 wo)
+{
+    vec3 d = position - camera.position.xyz;
+    float squared = ORTHOGRAPHIC ? 4.0 * dot(camera.up.xyz, camera.up.xyz) : dot(d, d); // as seen at half a unit of height per unit of distance
+    return FOOTPRINT * squared / abs(dot(normal, wo));
+}
+
 // Depends on the material alone, so that it is the same from all directions.
 bool scattersWidely(Surface s)
 {
@@ -43,31 +58,25 @@ bool scattersWidely(Surface s)
     return !polished || s.alphaG >= JOIN_ALPHA;
 }
 
-// Can x_(r-1) on `before` be joined to light at this distance?
-bool joinsLight(uint r, Surface before, float distance)
+// Can x_(r-1) on `before` be joined to light at `position`? `arrival`: p_(r-1) G.
+bool joinsLight(uint r, Surface before, vec3 position, float distance, float arrival)
 {
     if (SHIFT_MAP == SHIFT_REPLAY || (SHIFT_MAP == SHIFT_RECONNECTION && r != 2u)) return false;
-    return scattersWidely(before) && distance >= JOIN_DISTANCE;
+    if (!scattersWidely(before)) return false;
+    if (distance == RAY_MAX) return true; // the environment
+    if (SHIFT_MAP == SHIFT_HYBRID) return arrival * footprint <= 1.0;
+    return distance > JOIN_DISTANCE * maxComponent(max(abs(before.position), abs(position)));
 }
 
 // Can x_(r-1) on `before` be joined to x_r on `at`, which scatters on?
-bool joins(uint r, Surface before, Surface at, float distance)
+bool joins(uint r, Surface before, Surface at, float distance, float arrival)
 {
-    return joinsLight(r, before, distance) && scattersWidely(at);
-}
-
-// p_k of the direction between the vertices: a shift knows no other.
-float alignedPdf(Vertex x, Segment to)
-{
-    if (SHIFT_MAP == SHIFT_REPLAY || to.scatter.dirac) return to.scatter.pdf;
-    float pdf;
-    evaluate(x.bsdf, to.direction * x.bsdf.frame, to.direction, pdf);
-    return pdf > 0.0 ? pdf : to.scatter.pdf;
+    return joinsLight(r, before, at.position, distance, arrival) && scattersWidely(at);
 }
 
 void joinTrunk(Vertex before, Segment to, Surface at)
 {
-    if (trunk.joint != 0u || !joins(before.k + 1u, before.s, at, to.distance)) return;
+    if (trunk.joint != 0u || !joins(before.k + 1u, before.s, at, to.distance, to.arrival)) return;
     trunk.joint = before.k + 1u;
     trunk.triangle = to.hit.triangle;
     trunk.barycentric = to.hit.barycentric;
@@ -85,9 +94,10 @@ void departTrunk(Vertex x, Scatter scatter)
     }
 }
 
-void offerLight(Vertex x, Segment to)
+void offerLight(Vertex x, Segment to, vec3 position)
 {
-    lightJoint = LightJoint(trunk.joint == 0u && joinsLight(x.k + 1u, x.s, to.distance), to.hit, to.arrival);
+    bool joins = trunk.joint == 0u && joinsLight(x.k + 1u, x.s, position, to.distance, to.arrival);
+    lightJoint = LightJoint(joins, to.hit, to.arrival);
 }
 
 // The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).

@@ -16,10 +16,6 @@
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
 
-// A ray begins a little off its surface. From here on (scaled) a path follows the line between its vertices instead, as
-// shifts and light samples do: at grazing angles it would show.
-const float ALIGNED_DISTANCE = 1.0 / 1024.0;
-
 // x_k, about to scatter.
 struct Vertex {
     uint k;
@@ -32,8 +28,7 @@ struct Vertex {
 struct Segment {
     Scatter scatter;
     Hit hit;
-    vec3 direction; // between the vertices
-    float distance; // scaled; RAY_MAX: the environment
+    float distance; // from where the ray departed; RAY_MAX: the environment
     float arrival;  // p_k G: density over area at x_(k+1); over solid angle for the environment
 };
 
@@ -69,11 +64,10 @@ uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
 
 // From surface s to a target, or in that direction to infinity. Both ends are moved off their surfaces; the target has none
 // where its normal is 0.
-ShadowRay shadowRay(Surface s, bool infinite, vec3 target, vec3 targetNormal, vec3 direction, uint alphaSeed)
+ShadowRay shadowRay(Surface s, bool infinite, vec3 target, vec3 targetNormal, float targetOffset, vec3 direction, uint alphaSeed)
 {
-    vec3 origin = offsetOrigin(s.position, s.geometricNormal, direction);
-    vec3 end = targetNormal == vec3(0.0) ? target : offsetOrigin(target, targetNormal, -direction);
-    vec3 d = end - origin;
+    vec3 origin = departure(s, direction);
+    vec3 d = offsetOrigin(target, targetNormal, -direction, targetOffset) - origin;
     float distance = length(d);
     return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance), alphaSeed);
 }
@@ -91,7 +85,7 @@ void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay shadow)
 void emitByLight(Vertex x, PathSeed seed)
 {
     uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);
-    LightSample light = sampleLight(random, x.s.position);
+    LightSample light = sampleLight(random, x.s);
     float scatterPdf;
     vec3 f = evaluate(x.bsdf, light.direction * x.bsdf.frame, light.direction, scatterPdf);
     float density = light.dirac ? light.pdf : light.pdf + scatterPdf;
@@ -104,7 +98,7 @@ void emitByLight(Vertex x, PathSeed seed)
     if (contribution == vec3(0.0)) return;
     ++shadowRays;
     emitUnlessBlocked(makeLeaf(x.k, BY_LIGHT), contribution, e,
-                      shadowRay(x.s, light.infinite, light.target, light.normal, light.direction, random.w));
+                      shadowRay(x.s, light.infinite, light.target, light.normal, light.offset, light.direction, random.w));
 }
 
 // Surface s is the first vertex, x_1 of a whole path, seen from direction wo.
@@ -128,10 +122,9 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
         x.throughput *= to.scatter.weight;
         if (x.throughput == vec3(0.0)) return;
         ++tracedRays;
-        to.direction = to.scatter.direction;
-        wo = -to.direction;
-        to.hit = closestHit(Ray(offsetOrigin(x.s.position, x.s.geometricNormal, to.scatter.direction), to.scatter.direction, RAY_MAX),
-                            random.w);
+        wo = -to.scatter.direction;
+        vec3 origin = departure(x.s, to.scatter.direction);
+        to.hit = closestHit(Ray(origin, to.scatter.direction, RAY_MAX), random.w);
         departTrunk(x, to.scatter);
 
         // Light found by scattering, weighted against next-event estimation.
@@ -146,17 +139,15 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
             to.arrival = to.scatter.pdf;
         } else {
             next = loadSurface(to.hit.triangle, to.hit.barycentric, wo);
-            vec3 d = next.position - x.s.position;
+            vec3 d = next.position - origin;
             to.distance = length(d);
-            if (to.distance > ALIGNED_DISTANCE) to.direction = d / to.distance;
-            wo = -to.direction;
-            to.arrival = alignedPdf(x, to) * abs(dot(next.geometricNormal, to.direction)) / dot(d, d);
+            to.arrival = to.scatter.pdf * abs(dot(next.geometricNormal, wo)) / dot(d, d);
             e.radiance = next.emission;
-            e.lightPdf = lightPdf(next, x.s.position, to.direction);
+            e.lightPdf = lightPdf(next, origin, to.scatter.direction);
         }
         if (e.radiance != vec3(0.0)) {
             e.weighted = e.radiance * (to.scatter.dirac ? 1.0 : to.scatter.pdf / (to.scatter.pdf + e.lightPdf));
-            offerLight(x, to);
+            offerLight(x, to, next.position);
             emit(makeLeaf(x.k, BY_SCATTER), x.throughput * e.weighted, e);
         }
         if (to.hit.triangle == NO_HIT) return;

@@ -1,4 +1,4 @@
-// Rays against the scene: closestHit, occluded, offsetOrigin. The tables' layout and the tree's source: shared/bvh.h.
+// Rays against the scene: closestHit, occluded. The tables' layout and the tree's source: shared/bvh.h.
 //
 // The includer declares the tables Nodes and Triangles, the constants bool HAS_ALPHA, uint STACK_SIZE (at least the tree's
 // depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of
@@ -11,6 +11,7 @@
 #define SHADERS_SCENE_INTERSECT_GLSL
 
 #include "lib/loop.glsl"
+#include "lib/offset.glsl"
 #include "lib/table.glsl"
 #include "shared/bvh.h"
 
@@ -37,14 +38,9 @@ struct TraversalRay {
     vec3 inverse; // of the direction, finite
     vec3 tangent; // tangent, bitangent, direction: the frame in which triangles are tested
     vec3 bitangent;
-    float tMin; // a little before the origin: a surface that rounding has put behind it still counts
+    float tMin; // a little before the origin: boxes count that rounding has put behind it
     uint signs; // bit a: component a of the direction is negative
 };
-
-// Part of a coordinate's size by which a point on a surface may be off it; surfaces this near behind an origin are hit,
-// offsetOrigin moves 8 times as far.
-const float POSITION_ERROR = 1.0 / 4194304.0; // 2^-22
-const float ORIGIN_OFFSET = 8.0 * POSITION_ERROR;
 
 // Distance to go before the scene, at most two of its radii away, can begin: keeps coordinates relative to the origin,
 // and their rounding, of the scene's size however far the origin is.
@@ -180,7 +176,9 @@ TriangleMeeting meetTriangle(TraversalRay r, vec3 weights, vec3 toCorner0, vec3 
     return m;
 }
 
-// The nearer of a record's triangles that the ray meets before `nearest`, or at the same t and of lower index.
+// The nearer of a record's triangles that the ray meets before `nearest`, or at the same t and of lower index. What lies
+// at the origin is not met: rays begin clear of all surfaces, on the side they belong to (lib/offset.glsl, surface.glsl's
+// pointOn). Met at t = 0 or before, the second wall of a corner would be seen from behind, and light would leak in.
 //
 // Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else,
 // and two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v
@@ -206,9 +204,9 @@ bool meetsRecord(TraversalRay r, uvec4 row0, uvec4 row1, uvec4 row2, uvec4 row3,
     TriangleMeeting second = meetTriangle(r, secondWeights, to3, corner3, corner2, corner1);
     uint index0 = row0.w & ~BVH_ALPHA_FLAG;
     uint index1 = row1.w;
-    bool meetsFirst = first.met && first.t >= r.tMin &&
+    bool meetsFirst = first.met && first.t > 0.0 &&
                       (first.t < nearest.t || (!any && first.t == nearest.t && index0 < nearest.triangle));
-    bool meetsSecond = second.met && second.t >= r.tMin &&
+    bool meetsSecond = second.met && second.t > 0.0 &&
                        (second.t < nearest.t || (!any && second.t == nearest.t && index1 < nearest.triangle));
     bool takesSecond =
         meetsSecond && (!meetsFirst || second.t < first.t || (second.t == first.t && index1 < index0));
@@ -349,20 +347,6 @@ Hit closestHit(Ray ray, uint alphaSeed)
 bool occluded(Ray ray, uint alphaSeed)
 {
     return traverse(ray, alphaSeed, true).triangle != NO_HIT;
-}
-
-// Where a ray that leaves a surface point starts: off the surface, on the side of `direction`, by more than rounding
-// can have moved the point. `magnitude`: the largest absolute coordinate of the triangle's vertices, or a bound of it.
-vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction, float magnitude)
-{
-    float side = dot(geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
-    return position + (side * ORIGIN_OFFSET * magnitude) * geometricNormal;
-}
-
-// The same in a scene whose coordinates are at most 1.
-vec3 offsetOrigin(vec3 position, vec3 geometricNormal, vec3 direction)
-{
-    return offsetOrigin(position, geometricNormal, direction, 1.0);
 }
 
 #endif

@@ -11,6 +11,7 @@ struct LightSample {
     vec3 direction; // world, unit, from the shaded point
     vec3 target;    // light point; `normal` is its surface normal towards the shaded point
     vec3 normal;
+    float offset;   // of the end of a ray to there
     vec3 radiance;  // Le, or for Dirac lights I / d^2, or E; 0 when there is nothing to trace
     float pdf;      // solid angle; pick probability for Dirac lights
     bool dirac;
@@ -68,9 +69,10 @@ float lightPdf(Surface s, vec3 from, vec3 wi)
 
 float environmentPdf(vec4 environment) { return scene.environmentPick * environment.w; }
 
-LightSample sampleLight(uvec4 random, vec3 from)
+// As seen from surface s.
+LightSample sampleLight(uvec4 random, Surface s)
 {
-    LightSample l = LightSample(vec3(0.0, 0.0, 1.0), vec3(0.0), vec3(0.0), vec3(0.0), 1.0, false, false);
+    LightSample l = LightSample(vec3(0.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0, vec3(0.0), 1.0, false, false);
     if (scene.lightCount == 0u) return l;
     uint index;
     uint remainder;
@@ -87,7 +89,8 @@ LightSample sampleLight(uvec4 random, vec3 from)
         vec2 barycentric = sampleTriangle(u);
         TriangleGeometry g = loadTriangle(item);
         l.target = baryMix(g.p0, g.p1, g.p2, barycentric);
-        vec3 d = l.target - from;
+        l.offset = offsetOf(g);
+        vec3 d = l.target - departure(s, l.target - s.position);
         float squared = dot(d, d);
         float twiceArea = length(g.areaNormal);
         l.direction = d * inversesqrt(max(squared, SMALLEST_SQUARE));
@@ -108,7 +111,7 @@ LightSample sampleLight(uvec4 random, vec3 from)
         vec4 intensity = uintBitsToFloat(FETCH(SceneData, row + 1u));
         vec3 axis = uintBitsToFloat(FETCH(SceneData, row + 2u).xyz);
         l.target = head.xyz;
-        vec3 d = l.target - from;
+        vec3 d = l.target - departure(s, l.target - s.position);
         float squared = dot(d, d);
         l.direction = d * inversesqrt(max(squared, SMALLEST_SQUARE));
         float x = clamp((dot(-l.direction, axis) - head.w) * intensity.w, 0.0, 1.0);

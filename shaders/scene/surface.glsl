@@ -4,6 +4,7 @@
 #define SHADERS_SCENE_SURFACE_GLSL
 
 #include "lib/basis.glsl"
+#include "lib/offset.glsl"
 #include "scene/texture.glsl"
 
 const bool HAS_TEXTURES = HAS_BASE_COLOR_TEXTURE || HAS_METALLIC_ROUGHNESS_TEXTURE || HAS_NORMAL_MAP || HAS_EMISSIVE_TEXTURE ||
@@ -23,6 +24,7 @@ struct TriangleGeometry {
     uint material;   // index
     uint light;      // index, or NO_INDEX
     vec3 areaNormal; // cross product of the edges: length is twice the area, direction is the front
+    float clearance; // least barycentric weight of a point that paths scatter at
 };
 
 TriangleGeometry loadTriangle(uint triangle)
@@ -37,15 +39,30 @@ TriangleGeometry loadTriangle(uint triangle)
     g.p2 = uintBitsToFloat(c.xyz);
     g.material = a.w;
     g.light = b.w;
+    g.clearance = uintBitsToFloat(c.w);
     precise vec3 n = cross(g.p1 - g.p0, g.p2 - g.p0);
     g.areaNormal = n;
     return g;
 }
 
-vec3 hitPosition(uint triangle, vec2 barycentric)
+// Where paths scatter that hit a triangle there: the same point, but that it keeps clear of the edges. On an edge it would lie
+// on two surfaces, and be moved off one of them only (offsetOrigin): in the corner of a room the next ray could begin outside.
+vec3 pointOn(TriangleGeometry g, vec2 barycentric)
 {
-    TriangleGeometry g = loadTriangle(triangle);
-    return baryMix(g.p0, g.p1, g.p2, barycentric);
+    vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
+    if (any(lessThan(weights, vec3(g.clearance)))) {
+        weights = max(weights, vec3(g.clearance));
+        weights /= weights.x + weights.y + weights.z;
+    }
+    return baryMix(g.p0, g.p1, g.p2, weights.yz);
+}
+
+vec3 hitPosition(uint triangle, vec2 barycentric) { return pointOn(loadTriangle(triangle), barycentric); }
+
+// How far from its plane rays begin that leave the triangle.
+float offsetOf(TriangleGeometry g)
+{
+    return originOffset(normalize(g.areaNormal), max(abs(g.p0), max(abs(g.p1), abs(g.p2))));
 }
 
 // ------------------------------------------------------------------------------------------------------ what lies on it
@@ -117,20 +134,37 @@ float loadCoverage(uint material, uint row, vec2 barycentric, Coordinates at)
     return (flags & MATERIAL_MASK) != 0u ? float(alpha >= cutoff) : min(alpha, 1.0);
 }
 
+// What decides whether a translucent surface exists for a ray: independent for each triangle, but where the ray meets an edge
+// or a vertex all triangles around it decide as one. A ray exactly along an edge asks both of its triangles, and would
+// meet alpha twice.
+uvec4 alphaKey(uint triangle, TriangleGeometry g, vec2 barycentric)
+{
+    const float ON_EDGE = 2.384185791015625e-7; // 2^-22: rounding of a weight that is 0
+    bvec3 meets = greaterThan(vec3(1.0 - barycentric.x - barycentric.y, barycentric), vec3(ON_EDGE));
+    if (all(meets)) return uvec4(triangle, 0u, 0u, 0u);
+    // A sum of the ends, whichever is first; + 0.0 makes one zero of two.
+    return uvec4((meets.x ? floatBitsToUint(g.p0 + 0.0) : uvec3(0u)) + (meets.y ? floatBitsToUint(g.p1 + 0.0) : uvec3(0u)) +
+                     (meets.z ? floatBitsToUint(g.p2 + 0.0) : uvec3(0u)),
+                 1u);
+}
+
 // Does it exist for this ray? Called by traversal for triangles flagged so at build time.
 bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed)
 {
     uint row = triangle * scene.attributeRows;
-    uint material = materialRow(FETCH(Attributes, row).w);
-    float coverage = loadCoverage(material, row, barycentric, loadCoordinates(row, barycentric));
-    // Independent per ray and triangle, and the same again when the path is replayed.
-    return unitFloat(pcg4d(uvec4(alphaSeed, triangle, 0u, 0u)).x) < coverage;
+    TriangleGeometry g = loadTriangle(triangle);
+    float coverage = loadCoverage(materialRow(g.material), row, barycentric, loadCoordinates(row, barycentric));
+    // Independent per ray, and the same again when the path is replayed.
+    uvec4 key = alphaKey(triangle, g, barycentric);
+    key.xy = pcg4d(key).xy;
+    return unitFloat(pcg4d(uvec4(alphaSeed, key.xy, 0u)).x) < coverage;
 }
 
 // ------------------------------------------------------------------------------------------------------------- surfaces
 struct Surface {
     vec3 position;
     vec3 geometricNormal; // n_g, on w_o's side
+    float offset;         // of the origins of rays that leave it
     vec3 normal;          // n_s, likewise
     vec3 baseColor;       // b
     vec3 emission;        // radiance towards w_o
@@ -171,7 +205,8 @@ Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
     Coordinates at = loadCoordinates(row, barycentric);
 
     Surface s;
-    s.position = baryMix(g.p0, g.p1, g.p2, barycentric);
+    s.position = pointOn(g, barycentric);
+    s.offset = offsetOf(g);
     s.area = 0.5 * length(g.areaNormal);
     s.light = g.light;
     s.flags = FETCH(SceneData, material + 1u).w;
@@ -212,5 +247,9 @@ Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
     }
     return s;
 }
+
+// Where a path leaves the surface in direction d: all directions and distances of what follows are measured from there, by
+// rays, light samples and reconnections alike, so that they agree however near the next vertex is.
+vec3 departure(Surface s, vec3 d) { return offsetOrigin(s.position, s.geometricNormal, d, s.offset); }
 
 #endif

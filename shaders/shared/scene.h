@@ -10,7 +10,8 @@ SHARED_BEGIN
 
 SHARED_CONST uint NO_INDEX = 0xffffffffu;
 
-// Table Attributes: one record a triangle. Rows 0-2: vertex positions, w = material, light (or NO_INDEX), 0.
+// Table Attributes: one record a triangle. Rows 0-2: vertex positions, w = material, light (or NO_INDEX), the least
+// barycentric weight of points that paths scatter at (surface.glsl's pointOn).
 // Row 3: three octahedral normals, w = tangent 2. With UVs, rows 4-5: uv of vertices 0,1; uv of vertex 2, tangents 0,1.
 // With second UVs or vertex colors, rows 6-8: uv1 of 0,1; uv1 of 2, color 0; colors 1,2 (each color 4 halves).
 SHARED_CONST uint ATTRIBUTE_ROWS_BARE = 4u;

@@ -22,7 +22,11 @@ uvec4 replacedBlock(PathSeed seed, uint block, uvec2 key)
 uint endingOf(PathSample y)
 {
     if ((y.leaf & 1u) == BY_SCATTER) return lightJoint.hit.triangle == NO_HIT ? SKY_MET : LAMP_MET;
-    LightSample light = sampleLight(pathRandom(y.seed, scatteringsOf(y.leaf), PURPOSE_LIGHT), vec3(0.0));
+    Surface anywhere; // the kind of light does not depend on it
+    anywhere.position = vec3(0.0);
+    anywhere.geometricNormal = vec3(0.0);
+    anywhere.offset = 0.0;
+    LightSample light = sampleLight(pathRandom(y.seed, scatteringsOf(y.leaf), PURPOSE_LIGHT), anywhere);
     return light.dirac ? DIRAC_SAMPLED : light.infinite ? SKY_SAMPLED : LAMP_SAMPLED;
 }
 

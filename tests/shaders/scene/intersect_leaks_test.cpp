@@ -170,14 +170,6 @@ struct Leaving { // as offset_test.comp has it
 class OffsetOrigin : public Intersect
 {
   protected:
-    static float largestCoordinate(const Mesh& mesh)
-    {
-        float largest = 0;
-        for (const glm::vec3& p : mesh.positions)
-            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        return largest;
-    }
-
     // At an angle above the triangle's plane that is as often tiny as not, on the side of `side` times its normal.
     static Leaving leave(const Mesh& mesh, uint32_t triangle, float side, Random& random)
     {
@@ -189,7 +181,7 @@ class OffsetOrigin : public Intersect
         const glm::dvec3 direction = std::cos(elevation) * along + double(side) * std::sin(elevation) * normal;
         float s = random.between(0, 1), t = random.between(0, 1);
         if (s + t > 1) s = 1 - s, t = 1 - t;
-        return {glm::vec4(a, s), glm::vec4(b, t), glm::vec4(c, largestCoordinate(mesh)), glm::vec4(direction, 0)};
+        return {glm::vec4(a, s), glm::vec4(b, t), glm::vec4(c, 0), glm::vec4(direction, 0)};
     }
 
     std::vector<Hit> traceLeaving(const Mesh& mesh, const std::vector<Leaving>& rays)

@@ -16,7 +16,11 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(results.length()) / 3u) return;
-    LightSample light = sampleLight(pcg4d(uvec4(i, 5u, 6u, 7u)), origin.xyz);
+    Surface from; // in free space
+    from.position = origin.xyz;
+    from.geometricNormal = vec3(0.0);
+    from.offset = 0.0;
+    LightSample light = sampleLight(pcg4d(uvec4(i, 5u, 6u, 7u)), from);
     float density = light.pdf;
     vec3 radiance = light.radiance;
     uint triangle = NO_INDEX;

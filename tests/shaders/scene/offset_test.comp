@@ -14,7 +14,7 @@ TABLE(SET_SCENE, 1, Triangles);
 struct Leaving {
     vec4 v0; // of the triangle; w: barycentric u
     vec4 v1; // w: barycentric v
-    vec4 v2; // w: the largest coordinate of the scene
+    vec4 v2;
     vec4 direction;
 };
 layout(set = SET_PASS, binding = 0, std430) readonly buffer Rays { Leaving rays[]; };
@@ -33,7 +33,8 @@ void main()
     precise vec3 position = (1.0 - u - v) * from.v0.xyz + u * from.v1.xyz + v * from.v2.xyz;
     vec3 normal = normalize(cross(from.v1.xyz - from.v0.xyz, from.v2.xyz - from.v0.xyz));
     vec3 direction = from.direction.xyz;
-    Ray ray = Ray(offsetOrigin(position, normal, direction, from.v2.w), direction, RAY_MAX);
+    vec3 size = max(abs(from.v0.xyz), max(abs(from.v1.xyz), abs(from.v2.xyz)));
+    Ray ray = Ray(offsetOrigin(position, normal, direction, originOffset(normal, size)), direction, RAY_MAX);
     Hit hit = closestHit(ray, 0u);
     uint blocked = occluded(ray, 0u) ? 0x80000000u : 0u;
     hits[index] = uvec4((hit.triangle & 0x7fffffffu) | blocked, floatBitsToUint(vec3(hit.barycentric, hit.t)));
