@@ -62,14 +62,15 @@ uvec4 pathRandom(PathSeed seed, uint k, uint purpose)
     return randomBlock(seed, STREAM_PATH + 2u * k + purpose, uvec2(frame.key0, frame.key1));
 }
 
-// From surface s to a target, or in that direction to infinity. Both ends are moved off their surfaces; the target has none
-// where its normal is 0.
+// From surface s to a target, or in that direction to infinity. Both ends are moved off their surfaces (the target has none
+// where its normal is 0), and the ray ends short of the target, since rounding may find a surface there a little nearer.
 ShadowRay shadowRay(Surface s, bool infinite, vec3 target, vec3 targetNormal, float targetOffset, vec3 direction, uint alphaSeed)
 {
     vec3 origin = departure(s, direction);
     vec3 d = offsetOrigin(target, targetNormal, -direction, targetOffset) - origin;
     float distance = length(d);
-    return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance), alphaSeed);
+    return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance * (1.0 - 4.0 * POSITION_ERROR)),
+                     alphaSeed);
 }
 
 bool isBlocked(ShadowRay shadow) { return shadow.ray.tMax > 0.0 && occluded(shadow.ray, shadow.alphaSeed); }

@@ -82,7 +82,7 @@ void PrintTo(const ShiftError& error, std::ostream* os)
 
 const ShiftError ERRORS[] = {
     {"MissingCosine",
-     {{"path/walk.glsl", "abs(dot(next.geometricNormal, to.direction)) / dot(d, d)", "1.0 / dot(d, d)"},
+     {{"path/walk.glsl", "abs(dot(next.geometricNormal, wo)) / dot(d, d)", "1.0 / dot(d, d)"},
       {"path/integrand.glsl", "abs(dot(at.geometricNormal, direction)) / squared", "1.0 / squared"}},
      &ShiftFindings::jacobian},
     {"MissingDensity",

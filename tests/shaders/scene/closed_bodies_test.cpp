@@ -115,10 +115,22 @@ const std::vector<dvec3> SYMMETRIC = {{0, 0, 0}, {0, 0, 0.5}, {0.25, 0.25, 0.25}
 
 const Body BODIES[] = {
     {"Box", [] { return box(glm::mat4(1)); }, SYMMETRIC},
-    {"FlatBox", [] { return box(glm::scale(glm::mat4(1), {1, 0.01f, 1})); }, {{0, 0, 0}, {0.5, 0.001, 0.3}}},
+    {"FlatBox",
+     [] {
+         return box(glm::scale(glm::mat4(1), {1, 0.01f, 1}));
+     },
+     {{0, 0, 0}, {0.5, 0.001, 0.3}}},
     {"TurnedBox", [] { return box(turned(33, vec3(1))); }, SYMMETRIC},
-    {"TurnedFlatBox", [] { return box(turned(-71, {0.7f, 1, 0.02f})); }, {{0, 0, 0}}},
-    {"BoxOffTheOrigin", [] { return box(turned(20, vec3(0.02f), {1, -0.7f, 0.3f})); }, {{1, -0.7, 0.3}}},
+    {"TurnedFlatBox",
+     [] {
+         return box(turned(-71, {0.7f, 1, 0.02f}));
+     },
+     {{0, 0, 0}}},
+    {"BoxOffTheOrigin",
+     [] {
+         return box(turned(20, vec3(0.02f), {1, -0.7f, 0.3f}));
+     },
+     {{1, -0.7, 0.3}}},
     {"BoxBesideAFarTriangle", [] { return besideFar(box(turned(0, vec3(1))), 4e4f); }, SYMMETRIC},
     {"TurnedBoxBesideAFarTriangle", [] { return besideFar(box(turned(33, vec3(1))), 4e4f); }, SYMMETRIC},
     {"Corner", corner, {{-0.5, 0, -0.5}, {-0.5, 0.5, 0.5}, {0.4, 0.1, -0.3}}},
@@ -169,6 +181,6 @@ TEST_P(ClosedBodies, LeakNowhere)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ClosedBodies, testing::ValuesIn(BODIES),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& body) { return std::string(body.param.name); });
 
 } // namespace
