@@ -85,7 +85,7 @@ bool join(out Surface s, out vec3 wo)
         addSampledLight();
         return false;
     }
-    Hit hit = closestHit(Ray(departure(last, r.direction), r.direction, RAY_MAX), pathRandom(path.seed, k, PURPOSE_SCATTER).w);
+    Hit hit = nearestHit(Ray(departure(last, r.direction), r.direction, RAY_MAX), pathRandom(path.seed, k, PURPOSE_SCATTER).w);
     if (path.leaf == makeLeaf(k, BY_SCATTER)) addHit(hit, r.direction);
     if (path.leaf == makeLeaf(k, BY_SCATTER) || hit.triangle == NO_HIT) return false;
     wo = -r.direction;

@@ -13,7 +13,7 @@ void main()
 
     uint alphaSeed;
     Ray ray = pixelRay(pixel, alphaSeed);
-    Hit hit = closestHit(ray, alphaSeed);
+    Hit hit = nearestHit(ray, alphaSeed);
     surfaces[frame.slice * frame.width * frame.height + index] = uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u);
     addToCounter(COUNTER_PRIMARY, 1u);
 }

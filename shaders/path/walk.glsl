@@ -125,7 +125,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
         ++tracedRays;
         wo = -to.scatter.direction;
         vec3 origin = departure(x.s, to.scatter.direction);
-        to.hit = closestHit(Ray(origin, to.scatter.direction, RAY_MAX), random.w);
+        to.hit = nearestHit(Ray(origin, to.scatter.direction, RAY_MAX), random.w);
         departTrunk(x, to.scatter);
 
         // Light found by scattering, weighted against next-event estimation.

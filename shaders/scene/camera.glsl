@@ -3,9 +3,7 @@
 #define SHADERS_SCENE_CAMERA_GLSL
 
 #include "scene/bindings.glsl"
-#include "scene/surface.glsl" // alphaPasses, which traversal asks
-
-#include "scene/intersect.glsl"
+#include "scene/trace.glsl"
 
 // `at` in pixels, (0, 0) is the upper left corner of a run's picture.
 Ray cameraRay(CameraUniform camera, vec2 at)

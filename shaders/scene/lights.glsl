@@ -89,7 +89,7 @@ LightSample sampleLight(uvec4 random, Surface s)
         vec2 barycentric = sampleTriangle(u);
         TriangleGeometry g = loadTriangle(item);
         l.target = baryMix(g.p0, g.p1, g.p2, barycentric);
-        l.offset = offsetOf(g);
+        l.offset = offsetOf(g, barycentric);
         vec3 d = l.target - departure(s, l.target - s.position);
         float squared = dot(d, d);
         float twiceArea = length(g.areaNormal);

@@ -45,12 +45,17 @@ TriangleGeometry loadTriangle(uint triangle)
     return g;
 }
 
+float leastWeight(vec2 barycentric) { return min(min(barycentric.x, barycentric.y), 1.0 - barycentric.x - barycentric.y); }
+
+// Of the least weight that keeps clear of the edges: as near to one rounding can tell neither side of it from the other.
+const float EDGE_WEIGHT = 1.0 / 8.0;
+
 // Where paths scatter that hit a triangle there: the same point, but that it keeps clear of the edges. On an edge it would lie
 // on two surfaces, and be moved off one of them only (offsetOrigin): in the corner of a room the next ray could begin outside.
 vec3 pointOn(TriangleGeometry g, vec2 barycentric)
 {
     vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
-    if (any(lessThan(weights, vec3(g.clearance)))) {
+    if (leastWeight(barycentric) < g.clearance) {
         weights = max(weights, vec3(g.clearance));
         weights /= weights.x + weights.y + weights.z;
     }
@@ -59,10 +64,13 @@ vec3 pointOn(TriangleGeometry g, vec2 barycentric)
 
 vec3 hitPosition(uint triangle, vec2 barycentric) { return pointOn(loadTriangle(triangle), barycentric); }
 
-// How far from its plane rays begin that leave the triangle.
-float offsetOf(TriangleGeometry g)
+// How far from its plane rays begin that leave the triangle there. Near its edges they must pass clear of what lies beyond,
+// too, which is known as exactly as the largest coordinate.
+float offsetOf(TriangleGeometry g, vec2 barycentric)
 {
-    return originOffset(normalize(g.areaNormal), max(abs(g.p0), max(abs(g.p1), abs(g.p2))));
+    vec3 size = max(abs(g.p0), max(abs(g.p1), abs(g.p2)));
+    bool nearEdge = leastWeight(barycentric) < 2.0 * g.clearance;
+    return nearEdge ? originOffset(vec3(1.0, 0.0, 0.0), vec3(maxComponent(size))) : originOffset(normalize(g.areaNormal), size);
 }
 
 // ------------------------------------------------------------------------------------------------------ what lies on it
@@ -206,7 +214,7 @@ Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
 
     Surface s;
     s.position = pointOn(g, barycentric);
-    s.offset = offsetOf(g);
+    s.offset = offsetOf(g, barycentric);
     s.area = 0.5 * length(g.areaNormal);
     s.light = g.light;
     s.flags = FETCH(SceneData, material + 1u).w;

@@ -25,7 +25,7 @@ void main()
     uint seed = floatBitsToUint(paths[i].direction.w);
     uint from = NO_HIT;
     for (uint bounce = 0u; bounce <= BOUNCES; ++bounce) {
-        Hit hit = closestHit(Ray(origin, direction, RAY_MAX), 0u);
+        Hit hit = nearestHit(Ray(origin, direction, RAY_MAX), 0u);
         bool inside = hit.triangle != NO_HIT && dot(loadTriangle(hit.triangle).areaNormal, direction) < 0.0;
         bool blocked = occluded(Ray(origin, direction, RAY_MAX), 0u);
         if (!inside || !blocked) {
