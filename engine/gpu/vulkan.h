@@ -87,6 +87,8 @@ struct PipelineState {
     VkPipeline pipeline = VK_NULL_HANDLE;
     std::array<uint32_t, 3> workgroupSize = {1, 1, 1};
     double compileSeconds = 0;
+    // Of a workgroup, the last time; shared with the flights that will know it, which may outlive the pipeline.
+    std::shared_ptr<std::optional<double>> groupMilliseconds = std::make_shared<std::optional<double>>();
 };
 
 struct BindGroupState {
@@ -110,6 +112,7 @@ struct Timestamps {
     struct Timed {
         std::string label;
         uint64_t groups = 0;
+        std::shared_ptr<std::optional<double>> groupMilliseconds; // the pipeline's
     };
     std::vector<VkQueryPool> pages;
     std::vector<Timed> dispatches;
@@ -227,8 +230,7 @@ struct DeviceState {
     std::vector<VkCommandBuffer> freeCommandBuffers;
     std::vector<VkQueryPool> freeQueryPages;
     std::vector<Timing> timings;
-    std::map<std::string, double> groupMilliseconds; // of a workgroup, last time, by the dispatch's label
-    bool stalled = false;                            // for good: nothing can be waited for or destroyed
+    bool stalled = false; // for good: nothing can be waited for or destroyed
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;
     std::unique_ptr<BufferState> staging;
