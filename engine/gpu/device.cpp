@@ -82,6 +82,7 @@ DeviceState::DeviceState(const DeviceDescriptor& wanted) : DeviceState(wanted, W
 {
     const std::vector<PhysicalDevice> devices = physicalDevices(instance.handle());
     physical = choose(devices, wanted.adapter);
+    tune(physical, wanted.tuning);
     vkGetPhysicalDeviceProperties(physical.handle, &properties);
     vkGetPhysicalDeviceMemoryProperties(physical.handle, &memoryProperties);
     device = openDevice(physical, wanted.validation || wanted.robust);

@@ -70,7 +70,8 @@ Instance::Instance(bool validation)
         extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
 
-    // Drivers that lack some of Vulkan (MoltenVK) are listed only to those who ask; compute needs nothing that they lack.
+    // Drivers that lack some of Vulkan (MoltenVK) are listed only to those who ask; compute needs nothing that they
+    // lack.
     const bool portable = hasInstanceExtension(nullptr, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     if (portable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 

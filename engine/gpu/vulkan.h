@@ -49,8 +49,12 @@ struct PhysicalDevice {
     VkPhysicalDevice handle = VK_NULL_HANDLE;
     uint32_t queueFamily = 0;
     uint32_t timestampBits = 0;
+    uint64_t texelBytes = 0; // of the largest texel buffer
+    DeviceClass deviceClass;
     Adapter adapter;
 };
+// Chooses by device class, but for the overrides. Throws Error: not possible there.
+void tune(PhysicalDevice& device, const std::string& overrides);
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
 // By index or part of the name; empty: discrete, integrated, virtual, cpu, other. Throws Error that lists what there
 // is.
@@ -190,6 +194,7 @@ struct DeviceState {
     std::vector<uint32_t> loadShader(const std::string& shader) const; // compiled here and now for hot reload
     VkDescriptorSetLayout setLayout(const std::map<uint32_t, VkDescriptorType>& bindings);
     VkDescriptorType descriptorType(Binding::Kind kind) const;
+    bool tablesAreTexelBuffers() const { return physical.adapter.tuning.tables == Tuning::Tables::Texel; }
     VkCommandBuffer takeCommandBuffer();
     VkQueryPool takeQueryPage();
     void recycle(std::vector<VkCommandBuffer> commands, std::vector<VkQueryPool> pages);
