@@ -14,7 +14,7 @@ namespace gpu
 namespace
 {
 
-constexpr uint32_t ENOUGH_TEXELS = 1u << 24; // fewer: tables are storage buffers
+constexpr uint32_t ENOUGH_TEXELS = 1u << 24; // fewer: tables cannot be texel buffers
 constexpr uint32_t ENOUGH_TABLES = 16;       // of a stage: likewise; texel buffers count as storage images
 
 // Whatever the device offers, the program stays inside what WebGPU could.
@@ -36,12 +36,6 @@ const char* kindName(VkPhysicalDeviceType type)
 Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, uint64_t maxAllocation,
                 uint32_t timestampBits)
 {
-    VkFormatProperties format = {};
-    vkGetPhysicalDeviceFormatProperties(device, TABLE_FORMAT, &format);
-    const bool texel = limits.maxTexelBufferElements >= ENOUGH_TEXELS &&
-                       limits.maxPerStageDescriptorStorageImages >= ENOUGH_TABLES &&
-                       (format.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT) != 0;
-
     VkPhysicalDeviceMemoryProperties memory = {};
     vkGetPhysicalDeviceMemoryProperties(device, &memory);
     uint64_t heap = 0;
@@ -49,18 +43,25 @@ Limits limitsOf(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits, u
         if (h.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) heap = std::max(heap, h.size);
 
     const uint64_t storage = std::min<uint64_t>(limits.maxStorageBufferRange, maxAllocation);
-    const uint64_t texels = std::min<uint64_t>(limits.maxTexelBufferElements * TEXEL_BYTES, maxAllocation);
     return {
         .storageBindingBytes = storage,
-        .tableBytes = texel ? texels : storage,
+        .tableBytes = storage,
         .uniformBindingBytes = limits.maxUniformBufferRange,
         .storageBuffersPerStage = std::min(limits.maxPerStageDescriptorStorageBuffers, PORTABLE_STORAGE_BUFFERS),
         .workgroupInvocations = std::min(limits.maxComputeWorkGroupInvocations, PORTABLE_INVOCATIONS),
         .workgroupBytes = std::min(limits.maxComputeSharedMemorySize, PORTABLE_SHARED_BYTES),
         .memoryBytes = heap,
         .timestamps = timestampBits > 0,
-        .tablesAreTexelBuffers = texel,
     };
+}
+
+bool holdsTexelTables(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits)
+{
+    VkFormatProperties format = {};
+    vkGetPhysicalDeviceFormatProperties(device, TABLE_FORMAT, &format);
+    return limits.maxTexelBufferElements >= ENOUGH_TEXELS &&
+           limits.maxPerStageDescriptorStorageImages >= ENOUGH_TABLES &&
+           (format.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT) != 0;
 }
 
 std::optional<uint32_t> computeFamily(VkPhysicalDevice device, uint32_t& timestampBits)
@@ -103,9 +104,9 @@ std::vector<PhysicalDevice> physicalDevices(VkInstance instance)
         device.queueFamily = *family;
 
         VkPhysicalDeviceVulkan12Properties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
-        VkPhysicalDeviceVulkan11Properties memory = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+        VkPhysicalDeviceVulkan11Properties core11 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
                                                      .pNext = &driver};
-        VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &memory};
+        VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &core11};
         vkGetPhysicalDeviceProperties2(handle, &all);
         device.adapter = {
             .name = basic.deviceName,
@@ -114,11 +115,30 @@ std::vector<PhysicalDevice> physicalDevices(VkInstance instance)
             .apiVersion = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
                                       VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion)),
             .index = uint32_t(devices.size()),
-            .limits = limitsOf(handle, basic.limits, memory.maxMemoryAllocationSize, device.timestampBits),
+            .limits = limitsOf(handle, basic.limits, core11.maxMemoryAllocationSize, device.timestampBits),
         };
+        device.texelBytes =
+            std::min<uint64_t>(basic.limits.maxTexelBufferElements * TEXEL_BYTES, core11.maxMemoryAllocationSize);
+        device.deviceClass = {
+            .cpu = basic.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,
+            .texelTables = holdsTexelTables(handle, basic.limits),
+            .subgroupSums = (core11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+                            (core11.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) != 0,
+        };
+        tune(device, "");
         devices.push_back(device);
     }
     return devices;
+}
+
+void tune(PhysicalDevice& device, const std::string& overrides)
+{
+    Adapter& adapter = device.adapter;
+    adapter.tuning = tuningFor(device.deviceClass);
+    applyOverrides(adapter.tuning, overrides);
+    requirePossible(adapter.tuning, device.deviceClass, adapter.name);
+    const bool texel = adapter.tuning.tables == Tuning::Tables::Texel;
+    adapter.limits.tableBytes = texel ? device.texelBytes : adapter.limits.storageBindingBytes;
 }
 
 const PhysicalDevice& choose(std::span<const PhysicalDevice> devices, const std::string& wanted)
@@ -147,14 +167,19 @@ const PhysicalDevice& choose(std::span<const PhysicalDevice> devices, const std:
     throw Error("There is no Vulkan device \"{}\"; available: {}.", wanted, fmt::join(names, ", "));
 }
 
-std::vector<Adapter> enumerateAdapters()
+std::vector<Adapter> enumerateAdapters(const std::string& tuning)
 {
-    std::vector<Adapter> adapters;
+    std::vector<PhysicalDevice> devices;
     try {
         const Instance instance(false);
-        for (const PhysicalDevice& device : physicalDevices(instance.handle())) adapters.push_back(device.adapter);
+        devices = physicalDevices(instance.handle());
     } catch (const Error&) {
         // No driver: the empty list says so.
+    }
+    std::vector<Adapter> adapters;
+    for (PhysicalDevice& device : devices) {
+        tune(device, tuning);
+        adapters.push_back(device.adapter);
     }
     return adapters;
 }

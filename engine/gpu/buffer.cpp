@@ -21,8 +21,8 @@ VkBufferUsageFlags vulkanUsage(const DeviceState& device, Usage usage)
     if (has(usage, Usage::Storage)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     if (has(usage, Usage::Uniform)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     if (has(usage, Usage::Table))
-        flags |= device.physical.adapter.limits.tablesAreTexelBuffers ? VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT
-                                                                      : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        flags |= device.tablesAreTexelBuffers() ? VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT
+                                                : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     return flags;
 }
 
@@ -115,8 +115,7 @@ std::unique_ptr<BufferState> DeviceState::createBuffer(const BufferDescriptor& d
     allocatedBytes += needs.size;
     name(VK_OBJECT_TYPE_DEVICE_MEMORY, state->memory, descriptor.label);
     vkCheck(vkBindBufferMemory(device, state->buffer, state->memory, 0), "vkBindBufferMemory", descriptor.label);
-    if (state->usage != Usage::Readback && has(state->usage, Usage::Table) &&
-        physical.adapter.limits.tablesAreTexelBuffers)
+    if (state->usage != Usage::Readback && has(state->usage, Usage::Table) && tablesAreTexelBuffers())
         createView(*state);
 
     const bool direct = has(descriptor.usage, Usage::Readback) || !options.forceStaging;

@@ -6,6 +6,7 @@
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/gpu/vulkan.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +18,20 @@ namespace gpu
 
 namespace
 {
+
+// Whoever offers it wants it enabled (VUID-VkDeviceCreateInfo-pProperties-04451): a device that lacks some of Vulkan.
+constexpr const char* PORTABILITY_SUBSET = "VK_KHR_portability_subset"; // the header hides its name with beta features
+
+std::vector<const char*> deviceExtensions(VkPhysicalDevice device)
+{
+    uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> offered(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, offered.data());
+    const bool subset = std::ranges::any_of(
+        offered, [](const auto& e) { return std::strcmp(e.extensionName, PORTABILITY_SUBSET) == 0; });
+    return subset ? std::vector{PORTABILITY_SUBSET} : std::vector<const char*>();
+}
 
 VkDevice openDevice(const PhysicalDevice& physical, bool robust)
 {
@@ -30,10 +45,13 @@ VkDevice openDevice(const PhysicalDevice& physical, bool robust)
                                            .queueFamilyIndex = physical.queueFamily,
                                            .queueCount = 1,
                                            .pQueuePriorities = &priority};
+    const std::vector<const char*> extensions = deviceExtensions(physical.handle);
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = &features,
                                      .queueCreateInfoCount = 1,
-                                     .pQueueCreateInfos = &queue};
+                                     .pQueueCreateInfos = &queue,
+                                     .enabledExtensionCount = uint32_t(extensions.size()),
+                                     .ppEnabledExtensionNames = extensions.data()};
     VkDevice device = VK_NULL_HANDLE;
     const VkResult result = vkCreateDevice(physical.handle, &info, nullptr, &device);
     if (result == VK_ERROR_INITIALIZATION_FAILED)
@@ -64,6 +82,7 @@ DeviceState::DeviceState(const DeviceDescriptor& wanted) : DeviceState(wanted, W
 {
     const std::vector<PhysicalDevice> devices = physicalDevices(instance.handle());
     physical = choose(devices, wanted.adapter);
+    tune(physical, wanted.tuning);
     vkGetPhysicalDeviceProperties(physical.handle, &properties);
     vkGetPhysicalDeviceMemoryProperties(physical.handle, &memoryProperties);
     device = openDevice(physical, wanted.validation || wanted.robust);

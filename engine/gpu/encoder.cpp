@@ -131,7 +131,8 @@ void EncoderState::dispatch(const Dispatch& dispatch)
     dispatchInBands(pipeline, dispatch, groups, name);
     if (timed) {
         timestamp(2 * index + 1);
-        timestamps.dispatches.push_back({name, uint64_t{groups[0]} * groups[1] * groups[2]});
+        timestamps.dispatches.push_back(
+            {name, uint64_t{groups[0]} * groups[1] * groups[2], pipeline.groupMilliseconds});
     }
 }
 
@@ -140,9 +141,9 @@ void EncoderState::dispatchInBands(const PipelineState& pipeline, const Dispatch
                                    const std::array<uint32_t, 3>& groups, const std::string& name)
 {
     const uint32_t axis = uint32_t(std::ranges::max_element(groups) - groups.begin());
-    const auto known = device->groupMilliseconds.find(name);
-    const bool isKnown = known != device->groupMilliseconds.end();
-    const double slice = isKnown ? known->second * groups[0] * groups[1] * groups[2] / groups[axis] : 0;
+    const std::optional<double> known = *pipeline.groupMilliseconds; // not by name: variants may differ tenfold
+    const bool isKnown = known.has_value();
+    const double slice = known.value_or(0) * groups[0] * groups[1] * groups[2] / groups[axis];
     const double bands = isKnown ? std::ceil(slice * groups[axis] / LONGEST_MILLISECONDS) : FIRST_BANDS;
     const uint32_t step = uint32_t(std::clamp(std::floor(groups[axis] / bands), 1.0, double(groups[axis])));
 

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/gpu/tuning.h"
+
 namespace gpu
 {
 
@@ -29,14 +31,13 @@ struct EncoderState;
 // What the program relies on. Portable by construction: stays inside WebGPU's defaults.
 struct Limits {
     uint64_t storageBindingBytes = 0;    // largest storage binding, bytes
-    uint64_t tableBytes = 0;             // largest Table, bytes (texel buffer elements x 16, or storageBindingBytes)
+    uint64_t tableBytes = 0;             // largest Table, bytes: of a texel buffer, or storageBindingBytes
     uint64_t uniformBindingBytes = 0;    // bytes
     uint32_t storageBuffersPerStage = 0; // count, tables apart
     uint32_t workgroupInvocations = 0;   // count
     uint32_t workgroupBytes = 0;         // shared memory, bytes
     uint64_t memoryBytes = 0;            // largest device-local heap, bytes
     bool timestamps = false;
-    bool tablesAreTexelBuffers = false; // else tables are storage buffers: see Usage::Table
 };
 
 // One physical device that could be used.
@@ -47,13 +48,16 @@ struct Adapter {
     std::string apiVersion; // "1.3.230"
     uint32_t index = 0;     // what --device INDEX means
     Limits limits;
+    Tuning tuning;
 };
 
-// All adapters of the Vulkan loader with a compute queue, in the loader's order. Empty when there is no driver.
-std::vector<Adapter> enumerateAdapters();
+// All adapters of the Vulkan loader with a compute queue, in the loader's order. Empty when there is no driver. Throws
+// Error: one of them cannot be tuned like that.
+std::vector<Adapter> enumerateAdapters(const std::string& tuning = "");
 
 struct DeviceDescriptor {
     std::string adapter;     // index, or part of a name, case-insensitive; empty: discrete before integrated before cpu
+    std::string tuning;      // overrides: "NAME=VALUE,..." (engine/gpu/tuning.h)
     bool validation = false; // validation layer with synchronization validation; throws Error when not installed
     std::string
         shaderDirectory; // if set: read and compile GLSL from here at run time (hot reload) instead of embedded SPIR-V

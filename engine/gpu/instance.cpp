@@ -70,6 +70,11 @@ Instance::Instance(bool validation)
         extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
 
+    // Drivers that lack some of Vulkan (MoltenVK) are listed only to those who ask; compute needs nothing that they
+    // lack.
+    const bool portable = hasInstanceExtension(nullptr, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    if (portable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+
     const VkDebugUtilsMessengerCreateInfoEXT messengerInfo = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
@@ -93,6 +98,7 @@ Instance::Instance(bool validation)
     const VkInstanceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
         .pNext = validation ? &features : nullptr,
+        .flags = portable ? VkInstanceCreateFlags(VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR) : 0,
         .pApplicationInfo = &application,
         .enabledLayerCount = uint32_t(layers.size()),
         .ppEnabledLayerNames = layers.data(),

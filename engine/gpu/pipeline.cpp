@@ -34,7 +34,7 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
                     limits.storageBuffersPerStage);
     const uint64_t all = count(Binding::Kind::Storage, Binding::Kind::Table);
     const uint32_t most = device.properties.limits.maxPerStageDescriptorStorageBuffers;
-    if (!limits.tablesAreTexelBuffers && all > most)
+    if (!device.tablesAreTexelBuffers() && all > most)
         throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of \"{}\".", label, all,
                     most, deviceName);
 
@@ -160,7 +160,7 @@ void checkNames(const BindGroupDescriptor& descriptor, std::span<const Binding> 
 
 std::vector<uint32_t> DeviceState::loadShader(const std::string& shader) const
 {
-    const bool texel = physical.adapter.limits.tablesAreTexelBuffers;
+    const bool texel = tablesAreTexelBuffers();
     const bool isFile = shader.find('/') != std::string::npos;
     if (options.shaderDirectory.empty() || isFile) return gpu::loadShader(shader, texel);
     const std::filesystem::path directory = options.shaderDirectory;
@@ -170,8 +170,7 @@ std::vector<uint32_t> DeviceState::loadShader(const std::string& shader) const
 VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
 {
     if (kind == Binding::Kind::Uniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    if (kind == Binding::Kind::Table && physical.adapter.limits.tablesAreTexelBuffers)
-        return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    if (kind == Binding::Kind::Table && tablesAreTexelBuffers()) return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
     return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
@@ -197,10 +196,13 @@ VkDescriptorSetLayout DeviceState::setLayout(const std::map<uint32_t, VkDescript
 ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& descriptor)
 {
     return whileDoing(fmt::format("creating pipeline \"{}\"", descriptor.label), [&] {
-        const bool texel = limits().tablesAreTexelBuffers;
+        const Tuning& tuning = state_->physical.adapter.tuning;
         const std::string& shader = descriptor.shader.empty() ? descriptor.label : descriptor.shader;
-        const std::vector<uint32_t> spirv = state_->loadShader(shader);
-        Reflection reflection = reflect(spirv, shader, texel, descriptor.constants);
+        std::vector<uint32_t> spirv = state_->loadShader(shader);
+        std::vector<Constant> constants = {{"LOOPS_TEST_AT_END", tuning.loops == Tuning::Loops::End},
+                                           {"COUNTERS", uint32_t(tuning.counters)}};
+        constants.insert(constants.end(), descriptor.constants.begin(), descriptor.constants.end()); // which win
+        Reflection reflection = reflect(spirv, shader, state_->tablesAreTexelBuffers(), constants);
         checkLimits(*state_, reflection, shader);
 
         auto pipeline = std::make_unique<PipelineState>(*state_);
@@ -208,10 +210,9 @@ ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& d
         pipeline->bindings = std::move(reflection.bindings);
         pipeline->workgroupSize = reflection.workgroupSize;
         createLayout(*pipeline);
-        // SwiftShader, the driver without texel buffers, keeps all variables of all that it inlines in memory: what it
-        // compiles in seconds when simplified takes it more than 24 GB as it is. Mesa's gains nothing (LOG.md).
-        const std::vector<uint32_t> given = texel ? spirv : simplified(spirv, shader, reflection.constants);
-        compile(*pipeline, given, reflection.constants);
+        if (tuning.contraction == Tuning::Contraction::Forbidden) spirv = withoutContraction(spirv);
+        if (tuning.shaders == Tuning::Shaders::Simplified) spirv = simplified(spirv, shader, reflection.constants);
+        compile(*pipeline, spirv, reflection.constants);
         return ComputePipeline(std::move(pipeline));
     });
 }

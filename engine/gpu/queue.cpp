@@ -148,7 +148,7 @@ void DeviceState::collect(const Flight& flight)
                 "vkGetQueryPoolResults", dispatch.label);
         const double milliseconds =
             double((ticks[1] - ticks[0]) & mask) * double(properties.limits.timestampPeriod) * 1e-6;
-        groupMilliseconds[dispatch.label] = milliseconds / double(dispatch.groups);
+        *dispatch.groupMilliseconds = milliseconds / double(dispatch.groups);
         const auto same = std::find_if(timings.begin() + std::ptrdiff_t(first), timings.end(),
                                        [&](const Timing& t) { return t.label == dispatch.label; });
         if (same != timings.end())

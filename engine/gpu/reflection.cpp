@@ -1,6 +1,7 @@
 // What a compute shader declares, through SPIRV-Cross.
 
 #include "engine/base/error.h"
+#include "engine/gpu/instructions.h"
 #include "engine/gpu/shader.h"
 
 #include <spirv-tools/optimizer.hpp>
@@ -151,15 +152,11 @@ struct Inspector {
     // SPIRV-Cross does not list shared variables: look for OpVariable <type> <id> Workgroup among the instructions.
     uint64_t sharedBytes(std::span<const uint32_t> spirv) const
     {
-        constexpr size_t HEADER_WORDS = 5;
         uint64_t bytes = 0;
-        for (size_t at = HEADER_WORDS; at < spirv.size();) {
-            const uint32_t opcode = spirv[at] & SpvOpCodeMask;
-            const uint32_t words = spirv[at] >> SpvWordCountShift;
-            if (opcode == SpvOpVariable && spirv[at + 3] == SpvStorageClassWorkgroup)
-                bytes += bytesOf(spvc_compiler_get_type_handle(compiler, spirv[at + 1]));
-            at += words;
-        }
+        forEachInstruction(spirv, [&](SpvOp opcode, std::span<const uint32_t> words, size_t) {
+            if (opcode == SpvOpVariable && words[3] == SpvStorageClassWorkgroup)
+                bytes += bytesOf(spvc_compiler_get_type_handle(compiler, words[1]));
+        });
         return bytes;
     }
 };
@@ -175,6 +172,19 @@ Inspector inspect(std::span<const uint32_t> spirv, const std::string& label)
     inspector.check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
                                                  &inspector.compiler));
     return inspector;
+}
+
+// Drivers refuse a shader that names what they lack, used or not.
+void dropUnusedSubgroupArithmetic(std::vector<uint32_t>& spirv)
+{
+    bool used = false;
+    size_t named = 0;
+    forEachInstruction(spirv, [&](SpvOp opcode, std::span<const uint32_t> words, size_t at) {
+        used = used || (opcode >= SpvOpGroupNonUniformIAdd && opcode <= SpvOpGroupNonUniformLogicalXor);
+        if (opcode == SpvOpCapability && words[1] == SpvCapabilityGroupNonUniformArithmetic) named = at;
+    });
+    const auto at = spirv.begin() + std::ptrdiff_t(named);
+    if (named != 0 && !used) spirv.erase(at, at + 2);
 }
 
 // The same shader with its constants set for good, so that all sizes in it are plain numbers.
@@ -194,6 +204,7 @@ std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string&
     std::vector<uint32_t> frozen;
     if (!optimizer.Run(spirv.data(), spirv.size(), &frozen))
         throw Error("Shader \"{}\" is not valid SPIR-V: {}.", label, problem);
+    if (simplify) dropUnusedSubgroupArithmetic(frozen);
     return frozen;
 }
 

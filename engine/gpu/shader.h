@@ -23,7 +23,12 @@ struct Reflection {
 Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bool tablesAreTexelBuffers,
                    std::span<const Constant> constants);
 
-// The same shader with these values of its constants (by constant_id), inlined and without what they leave unused.
+// The same shader, of which no product and sum may become one operation, and no sum be reordered: each of its
+// operations on numbers rounds as IEEE 754 says, in every pipeline alike.
+std::vector<uint32_t> withoutContraction(std::span<const uint32_t> spirv);
+
+// The same shader with these values of its constants (by constant_id), inlined and without what they leave unused;
+// without subgroup arithmetic's name, too, if that is.
 std::vector<uint32_t> simplified(std::span<const uint32_t> spirv, const std::string& label,
                                  const std::map<uint32_t, uint32_t>& constants);
 

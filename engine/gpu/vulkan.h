@@ -49,8 +49,12 @@ struct PhysicalDevice {
     VkPhysicalDevice handle = VK_NULL_HANDLE;
     uint32_t queueFamily = 0;
     uint32_t timestampBits = 0;
+    uint64_t texelBytes = 0; // of the largest texel buffer
+    DeviceClass deviceClass;
     Adapter adapter;
 };
+// Chooses by device class, but for the overrides. Throws Error: not possible there.
+void tune(PhysicalDevice& device, const std::string& overrides);
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
 // By index or part of the name; empty: discrete, integrated, virtual, cpu, other. Throws Error that lists what there
 // is.
@@ -87,6 +91,8 @@ struct PipelineState {
     VkPipeline pipeline = VK_NULL_HANDLE;
     std::array<uint32_t, 3> workgroupSize = {1, 1, 1};
     double compileSeconds = 0;
+    // Of a workgroup, the last time; shared with the flights that will know it, which may outlive the pipeline.
+    std::shared_ptr<std::optional<double>> groupMilliseconds = std::make_shared<std::optional<double>>();
 };
 
 struct BindGroupState {
@@ -110,6 +116,7 @@ struct Timestamps {
     struct Timed {
         std::string label;
         uint64_t groups = 0;
+        std::shared_ptr<std::optional<double>> groupMilliseconds; // the pipeline's
     };
     std::vector<VkQueryPool> pages;
     std::vector<Timed> dispatches;
@@ -187,6 +194,7 @@ struct DeviceState {
     std::vector<uint32_t> loadShader(const std::string& shader) const; // compiled here and now for hot reload
     VkDescriptorSetLayout setLayout(const std::map<uint32_t, VkDescriptorType>& bindings);
     VkDescriptorType descriptorType(Binding::Kind kind) const;
+    bool tablesAreTexelBuffers() const { return physical.adapter.tuning.tables == Tuning::Tables::Texel; }
     VkCommandBuffer takeCommandBuffer();
     VkQueryPool takeQueryPage();
     void recycle(std::vector<VkCommandBuffer> commands, std::vector<VkQueryPool> pages);
@@ -227,8 +235,7 @@ struct DeviceState {
     std::vector<VkCommandBuffer> freeCommandBuffers;
     std::vector<VkQueryPool> freeQueryPages;
     std::vector<Timing> timings;
-    std::map<std::string, double> groupMilliseconds; // of a workgroup, last time, by the dispatch's label
-    bool stalled = false;                            // for good: nothing can be waited for or destroyed
+    bool stalled = false; // for good: nothing can be waited for or destroyed
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;
     std::unique_ptr<BufferState> staging;

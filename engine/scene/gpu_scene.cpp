@@ -26,10 +26,8 @@ TraversalStack traversalStack(const gpu::Adapter& adapter, const BvhStats& bvh)
     constexpr uint32_t STEP = 4;            // trees of about one depth share pipelines
     constexpr uint32_t MOST_REGISTERS = 16; // all of them move at each visit
     const uint32_t entries = std::max((bvh.depth + STEP - 1) / STEP * STEP, STEP);
-    // Mesa's CPU driver, but not SwiftShader, which has no texel buffers to speak of: 1.25 and 0.65 times the rays per
-    // second of an array (tests/bench/LOG.md). Not measured on graphics cards.
-    const bool masked = adapter.kind == "cpu" && adapter.limits.tablesAreTexelBuffers;
-    return {.entries = entries, .inRegisters = masked && entries <= MOST_REGISTERS};
+    const bool wanted = adapter.tuning.stack == gpu::Tuning::Stack::Registers;
+    return {.entries = entries, .inRegisters = wanted && entries <= MOST_REGISTERS};
 }
 
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)

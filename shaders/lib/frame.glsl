@@ -2,31 +2,50 @@
 #ifndef SHADERS_LIB_FRAME_GLSL
 #define SHADERS_LIB_FRAME_GLSL
 
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #include "lib/random.glsl"
 #include "shared/frame.h"
 #include "shared/streams.h"
+#include "shared/tuning.h"
 #include "shared/variant.h"
 
 #define DECLARE_CONSTANT(ID, TYPE, NAME, DEFAULT, WHAT) layout(constant_id = ID) const TYPE NAME = DEFAULT;
 VARIANT_CONSTANTS(DECLARE_CONSTANT)
 #undef DECLARE_CONSTANT
+layout(constant_id = 65) const uint COUNTERS = COUNTERS_EACH; // set by the device (engine/gpu/tuning.h)
 
 layout(set = SET_FRAME, binding = 0, std140) uniform Frame { FrameUniform frame; };
 // 64-bit counters as (low, high) pairs.
 layout(set = SET_FRAME, binding = 1, std430) buffer Counters { uint counters[]; };
 
-void addToCounter(uint counter, uint amount)
+void addAlone(uint counter, uint amount)
 {
     if (amount == 0u) return;
     uint before = atomicAdd(counters[2u * counter], amount);
     if (before + amount < before) atomicAdd(counters[2u * counter + 1u], 1u);
 }
 
+// Whichever invocations arrive here together: one of them adds for all. No control flow stands between sum and choice, so
+// that both are among the same ones. (What a subgroup counts in a frame is far below 2^32.)
+void addToCounter(uint counter, uint amount)
+{
+    if (COUNTERS == COUNTERS_OFF) return;
+    if (COUNTERS == COUNTERS_SUBGROUP) {
+        uint sum = subgroupAdd(amount);
+        amount = subgroupElect() ? sum : 0u;
+    }
+    addAlone(counter, amount);
+}
+
+// By its bits: compilers that are told of no such values take isnan and isinf away.
+bool isFinite(float value) { return (floatBitsToUint(value) & 0x7f800000u) != 0x7f800000u; }
+bool isFinite(vec3 value) { return isFinite(value.x) && isFinite(value.y) && isFinite(value.z); }
+
 // The one place that looks for non-finite values: such a value becomes 0 and is counted, never passed on silently.
 vec3 finiteOrCounted(vec3 value, uint stage)
 {
-    if (!any(isnan(value)) && !any(isinf(value))) return value;
-    addToCounter(COUNTER_NONFINITE + stage, 1u);
+    if (isFinite(value)) return value;
+    addAlone(COUNTER_NONFINITE + stage, 1u); // always, and too rarely for sums to pay
     return vec3(0.0);
 }
 

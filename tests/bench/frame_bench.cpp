@@ -28,6 +28,7 @@ struct Options {
     std::vector<std::string> scenes = {"cornell", "hall", "lamps", "dim"};
     std::vector<std::string> shifts = {"replay", "reconnection", "hybrid"};
     std::vector<std::string> shaders = {""}; // folders of shader trees that race; empty: the built-in one
+    std::vector<std::string> tunings = {""}; // of the device, which race, too; empty: what its class gets
     std::string device;
     std::string size = "320x180";
     uint32_t spatial = 3;
@@ -40,7 +41,7 @@ struct Options {
 };
 
 struct Case {
-    std::string shaders; // or what is compiled in beyond need
+    std::string shaders; // and tuning; or what is compiled in beyond need
     std::string method;
     std::string shift;
     std::unique_ptr<passes::Renderer> renderer;
@@ -255,9 +256,14 @@ nlohmann::ordered_json raceFeatures(gpu::Device& device, const std::string& name
 
 void run(const Options& options)
 {
-    std::vector<gpu::Device> devices; // one for each shader tree
+    std::vector<gpu::Device> devices; // one for each contestant
+    std::vector<std::string> contestants;
     for (const std::string& shaders : options.shaders)
-        devices.push_back(gpu::Device::create({.adapter = options.device, .shaderDirectory = shaders}));
+        for (const std::string& tuning : options.tunings) {
+            devices.push_back(
+                gpu::Device::create({.adapter = options.device, .tuning = tuning, .shaderDirectory = shaders}));
+            contestants.push_back(shaders.empty() || tuning.empty() ? shaders + tuning : shaders + " " + tuning);
+        }
     fmt::print("{}, {}; medians of {} rounds of {} frames\n", devices[0].adapter().name, devices[0].adapter().driver,
                options.rounds, options.frames);
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -280,10 +286,8 @@ void run(const Options& options)
                 auto renderer = sibling ? std::make_unique<passes::Renderer>(*sibling, settings)
                                         : std::make_unique<passes::Renderer>(devices[tree], scene, settings);
                 if (!sibling) sibling = renderer.get();
-                cases.push_back({.shaders = options.shaders[tree],
-                                 .method = method,
-                                 .shift = shift,
-                                 .renderer = std::move(renderer)});
+                cases.push_back(
+                    {.shaders = contestants[tree], .method = method, .shift = shift, .renderer = std::move(renderer)});
             };
             add("pt", "replay");
             for (const std::string& shift : options.shifts)
@@ -311,6 +315,7 @@ int main(int count, char** arguments)
     app.add_option("--shifts", options.shifts, "shift maps")
         ->check(CLI::IsMember({"replay", "reconnection", "hybrid"}));
     app.add_option("--shaders", options.shaders, "folders of shader trees, raced against each other");
+    app.add_option("--tunings", options.tunings, "NAME=VALUE,... of the device, raced against each other; '': none");
     app.add_option("--device", options.device, "index or part of a name");
     app.add_option("--size", options.size, "WxH, pixels");
     app.add_option("--spatial", options.spatial, "neighbors");

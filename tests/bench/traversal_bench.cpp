@@ -154,7 +154,7 @@ class Kernels
 
     gpu::ComputePipeline compile(const std::string& tree, uint32_t anyHit)
     {
-        const bool texel = device_.limits().tablesAreTexelBuffers;
+        const bool texel = device_.adapter().tuning.tables == gpu::Tuning::Tables::Texel;
         const std::vector<uint32_t> spirv =
             gpu::compileShader(TRICHROME_SOURCE_DIR "/tests/bench/traversal_bench.comp", tree, texel);
         const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("bench-{}", getpid());

@@ -68,6 +68,8 @@ gpu::Device GpuTest::openDevice(gpu::DeviceDescriptor descriptor)
 {
     descriptor.adapter = wantedDevice();
     descriptor.validation = true;
+    const char* tuning = std::getenv("TRICHROME_TEST_TUNING");
+    if (tuning && descriptor.tuning.empty()) descriptor.tuning = tuning;
     return gpu::Device::create(descriptor);
 }
 

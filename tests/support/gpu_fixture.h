@@ -11,7 +11,9 @@
 //     }
 //
 // The device is TRICHROME_TEST_DEVICE (default "llvmpipe"), opened once per executable, with synchronization
-// validation: a validation message fails the test that caused it.
+// validation: a validation message fails the test that caused it. TRICHROME_TEST_TUNING overrides what its class gets,
+// as
+// --device-tuning does.
 
 #include "engine/gpu/gpu.h"
 

@@ -29,6 +29,7 @@ passes::Identity identityOf(const passes::Renderer& renderer, const RunReport& r
     passes::Identity identity = {{"version", version()},
                                  {"device", report.adapter.name},
                                  {"driver", report.adapter.driver},
+                                 {"device-tuning", gpu::toText(report.adapter.tuning)},
                                  {"scene's contents", hexadecimal(renderer.sceneFingerprint())}};
     for (const auto& [name, value] : passes::toText(report.settings))
         if (decidesFrames(name)) identity.emplace_back(name, value);

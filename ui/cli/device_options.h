@@ -1,5 +1,5 @@
 #pragma once
-// --device and --shaders: which Vulkan device, with which shaders.
+// --device and its kin: which Vulkan device, with which shaders, tuned how.
 
 #include <string>
 
@@ -19,9 +19,10 @@ class DeviceOptions
     void addTo(CLI::App& app);                                      // must live until the options are read
     gpu::Device open(bool robust = false) const;                    // throws Error
     const std::string& shaderDirectory() const { return shaders_; } // empty: the embedded ones
+    const std::string& tuning() const { return tuning_; }           // overrides of what the device's class gets
 
   private:
-    std::string device_, shaders_;
+    std::string device_, shaders_, tuning_;
     double stall_ = gpu::DeviceDescriptor().stallSeconds;
 };
 

@@ -20,6 +20,7 @@ image::Metadata metadataOf(const RunReport& report)
     metadata.emplace_back("partial", report.partial ? "yes" : "no");
     metadata.emplace_back("device", report.adapter.name);
     metadata.emplace_back("driver", report.adapter.driver);
+    metadata.emplace_back("device-tuning", gpu::toText(report.adapter.tuning));
     metadata.emplace_back("version", version());
     return metadata;
 }
@@ -35,6 +36,7 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"method", settings["method"]},
             {"device", report.adapter.name},
             {"driver", report.adapter.driver},
+            {"device_tuning", gpu::toText(report.adapter.tuning)},
             {"width", report.settings.width},
             {"height", report.settings.height},
             {"frames", report.frames},

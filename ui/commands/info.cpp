@@ -45,10 +45,17 @@ struct InfoCommand {
     int run() const;
 };
 
-Json devicesJson()
+Json tuningJson(const gpu::Tuning& tuning)
+{
+    Json choices = Json::object();
+    for (const gpu::TuningText& text : gpu::describe(tuning)) choices[text.name] = text.value;
+    return choices;
+}
+
+Json devicesJson(const std::string& tuning)
 {
     Json list = Json::array();
-    for (const gpu::Adapter& adapter : gpu::enumerateAdapters()) {
+    for (const gpu::Adapter& adapter : gpu::enumerateAdapters(tuning)) {
         const gpu::Limits& limits = adapter.limits;
         list.push_back({{"index", adapter.index},
                         {"name", adapter.name},
@@ -58,13 +65,13 @@ Json devicesJson()
                         {"limits",
                          {{"storage_binding_bytes", limits.storageBindingBytes},
                           {"table_bytes", limits.tableBytes},
-                          {"tables_are_texel_buffers", limits.tablesAreTexelBuffers},
                           {"uniform_binding_bytes", limits.uniformBindingBytes},
                           {"storage_buffers_per_stage", limits.storageBuffersPerStage},
                           {"workgroup_invocations", limits.workgroupInvocations},
                           {"workgroup_bytes", limits.workgroupBytes},
                           {"memory_bytes", limits.memoryBytes},
-                          {"timestamps", limits.timestamps}}}});
+                          {"timestamps", limits.timestamps}}},
+                        {"tuning", tuningJson(adapter.tuning)}});
     }
     return list;
 }
@@ -78,6 +85,9 @@ void printDevices(const Json& devices)
                           device["driver"].get<std::string>(), device["api_version"].get<std::string>()));
         for (const auto& [name, value] : device["limits"].items())
             print(fmt::format("    {:<28}{}", name, jsonText(value)));
+        print("    Chosen by the device's class, or by --device-tuning:");
+        for (const auto& [name, value] : device["tuning"].items())
+            print(fmt::format("    {:<28}{}", name, value.get<std::string>()));
     }
 }
 
@@ -170,7 +180,7 @@ int InfoCommand::run() const
         for (const scene::BuiltInScene& builtIn : scene::builtInScenes())
             print(fmt::format("{:<10}{}", builtIn.name, builtIn.description));
     } else if (scene.empty()) {
-        facts["devices"] = devicesJson();
+        facts["devices"] = devicesJson(device.tuning());
         printDevices(facts["devices"]);
     } else {
         const passes::Settings chosen = settings.read();
@@ -181,8 +191,10 @@ int InfoCommand::run() const
                                   [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
         progress.clear();
         facts["device"] = gpu.adapter().name;
+        facts["tuning"] = tuningJson(gpu.adapter().tuning);
         facts["scene"] = sceneJson(scene, world, renderer.stats());
         printScene(facts["scene"], chosen);
+        print("Device: " + gpu.adapter().name + ", tuned " + gpu::toText(gpu.adapter().tuning));
     }
     if (!json.empty()) writeText(json, jsonText(facts, 2) + "\n");
     return 0;

@@ -1,6 +1,7 @@
 #include "engine/base/error.h"
 #include "engine/gpu/vulkan.h"
 #include "tests/support/gpu_fixture.h"
+#include "tests/support/program.h"
 
 #include <cstdlib>
 
@@ -84,6 +85,30 @@ TEST_F(Adapters, NoDriverIsAnErrorAndAnEmptyList)
         unsetenv("VK_ICD_FILENAMES");
     else
         setenv("VK_ICD_FILENAMES", before.c_str(), 1);
+}
+
+// Such drivers (MoltenVK) say so in their manifest, and loaders hide them from who does not ask.
+TEST_F(Adapters, DriversThatArePortableInPartsAreListedToo)
+{
+    const char* pinned = std::getenv("VK_ICD_FILENAMES");
+    if (!pinned) GTEST_SKIP() << "SKIPPED, NOT TESTED: no driver is pinned whose manifest could be copied";
+    const std::string before = pinned;
+    const std::vector<gpu::Adapter> expected = gpu::enumerateAdapters();
+    nlohmann::json manifest = readJson(before);
+    std::filesystem::path library = std::string(manifest["ICD"]["library_path"]);
+    if (library.has_parent_path()) library = std::filesystem::path(before).parent_path() / library; // if relative
+    manifest["ICD"]["library_path"] = library.string();
+    manifest["ICD"]["is_portability_driver"] = true;
+    const TemporaryDirectory directory;
+    writeFile(directory / "partly_portable.json", manifest.dump());
+    setenv("VK_ICD_FILENAMES", (directory / "partly_portable.json").c_str(), 1);
+    const std::vector<gpu::Adapter> found = gpu::enumerateAdapters();
+    std::string adapter;
+    EXPECT_NO_THROW(adapter = gpu::Device::create({}).adapter().name);
+    setenv("VK_ICD_FILENAMES", before.c_str(), 1);
+    ASSERT_EQ(found.size(), expected.size());
+    for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].name, expected[i].name);
+    EXPECT_EQ(adapter, expected.at(0).name);
 }
 
 TEST_F(Adapters, ValidationReportsOutOfOrderUse)

@@ -46,6 +46,32 @@ TEST_F(Stall, IsAnErrorThatNamesTheStageAndTheProgramCanEnd)
                 "stalls in \"endless\": nothing was finished for 0.25 s");
 }
 
+// Variants of a stage bear its name: how long one takes says nothing about the other.
+TEST_F(Stall, WhatAPipelineTakesIsItsOwnWhateverItsLabel)
+{
+    const gpu::Buffer from = create<uint32_t>("from", 4096), to = create<uint32_t>("to", 4096);
+    const gpu::Buffer step = upload("step", std::vector<uint32_t>{7, 11}, gpu::Usage::Uniform);
+    const auto dispatch = [&](const gpu::ComputePipeline& kernel) { // how many command buffers it was planned to take
+        const gpu::BindGroup frame =
+            device().createBindGroup({.label = "frame", .pipeline = &kernel, .set = 0, .buffers = {{"Step", &step}}});
+        const gpu::BindGroup pass = device().createBindGroup(
+            {.label = "pass", .pipeline = &kernel, .set = SET_PASS, .buffers = {{"From", &from}, {"To", &to}}});
+        gpu::CommandEncoder encoder = device().createCommandEncoder("variants");
+        encoder.dispatch({.pipeline = &kernel, .groups = {&frame, nullptr, &pass}, .threads = {4096}});
+        const size_t count = encoder.state()->commands.size();
+        device().queue().wait(device().queue().submit(std::move(encoder)));
+        return count;
+    };
+    const gpu::ComputePipelineDescriptor descriptor = {.label = "variant", .shader = TEST_SPIRV_DIR "/encoder_test"};
+    const gpu::ComputePipeline first = device().createComputePipeline(descriptor);
+    EXPECT_EQ(dispatch(first), gpu::FIRST_BANDS) << "not known yet";
+    EXPECT_EQ(dispatch(first), 1u);
+    const gpu::ComputePipeline second = device().createComputePipeline(descriptor);
+    EXPECT_EQ(dispatch(second), gpu::FIRST_BANDS) << "the first one's time is not the second's";
+    *second.state()->groupMilliseconds = gpu::LONGEST_MILLISECONDS;
+    EXPECT_EQ(dispatch(first), 1u);
+}
+
 TEST_F(Stall, SlowWorkIsCutIntoCommandBuffersAndGivesTheSame)
 {
     using Words = std::vector<uint32_t>;
@@ -62,7 +88,7 @@ TEST_F(Stall, SlowWorkIsCutIntoCommandBuffersAndGivesTheSame)
     const gpu::BindGroup pass = device().createBindGroup(
         {.label = "pass", .pipeline = &kernel, .set = SET_PASS, .buffers = {{"From", &from}, {"To", &to}}});
     const auto buffersOf = [&](double groupMilliseconds) {
-        device().state().groupMilliseconds["slow"] = groupMilliseconds;
+        *kernel.state()->groupMilliseconds = groupMilliseconds;
         gpu::CommandEncoder encoder = device().createCommandEncoder("slow");
         encoder.clear(to);
         encoder.dispatch({.pipeline = &kernel, .groups = {&frame, nullptr, &pass}, .threads = {COUNT}});

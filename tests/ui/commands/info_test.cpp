@@ -6,6 +6,8 @@
 #include "engine/scene/procedural.h"
 #include "passes/settings.h"
 
+#include <fmt/ranges.h>
+
 namespace
 {
 
@@ -41,6 +43,41 @@ TEST_F(Info, ListsTheDevicesWithTheirLimits)
         EXPECT_EQ(devices[i]["limits"]["storage_binding_bytes"], adapters[i].limits.storageBindingBytes);
         EXPECT_NE(told.out.find(adapters[i].name), std::string::npos);
     }
+}
+
+TEST_F(Info, ShowsHowDevicesAreTunedAndTakesOverrides)
+{
+    const std::string json = directory / "devices.json";
+    for (const std::string overrides : {"", "loops=start,counters=off"}) {
+        std::vector<std::string> command = {"info", "--json", json};
+        if (!overrides.empty()) command.insert(command.end(), {"--device-tuning", overrides});
+        const std::string told = runWell(command).out;
+        const std::vector<gpu::Adapter> adapters = gpu::enumerateAdapters(overrides);
+        const nlohmann::json devices = readJson(json)["devices"];
+        ASSERT_EQ(devices.size(), adapters.size());
+        for (size_t i = 0; i < adapters.size(); ++i)
+            for (const gpu::TuningText& text : gpu::describe(adapters[i].tuning)) {
+                EXPECT_EQ(devices[i]["tuning"][text.name], text.value);
+                EXPECT_NE(told.find(fmt::format("    {:<28}{}", text.name, text.value)), std::string::npos) << told;
+            }
+    }
+    const std::string help = run({"render", "--help"}).out;
+    for (const gpu::TuningText& text : gpu::describe({}))
+        EXPECT_NE(help.find(fmt::format("{}={}", text.name, fmt::join(text.values, "|"))), std::string::npos) << help;
+    expectRefusal({"info", "--device-tuning", "loop=end"}, 2, "no device tuning \"loop\"; there are: tables, loops,");
+    expectRefusal({"info", "--device-tuning", "loops=begin"}, 2,
+                  "\"begin\" is no value of the device tuning \"loops\"");
+    expectRefusal({"render", "cornell", "-o", directory / "x.png", "--device-tuning", "loops"}, 2, "not of the form");
+}
+
+// Pictures say how their device was tuned, so that equal metadata mean equal pixels.
+TEST_F(Info, OfASceneShowsTheTuningThatIsInForce)
+{
+    const std::string json = directory / "cornell.json";
+    const std::string told = runWell({"info", "cornell", "--json", json, "--device-tuning", "stack=array"}).out;
+    EXPECT_EQ(readJson(json)["tuning"]["stack"], "array");
+    EXPECT_EQ(readJson(json)["scene"]["variant"]["STACK_IN_REGISTERS"]["value"], "off");
+    EXPECT_NE(told.find("stack=array"), std::string::npos) << told;
 }
 
 TEST_F(Info, ListsTheBuiltInScenes)
