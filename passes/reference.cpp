@@ -92,7 +92,9 @@ References::References(const Renderer& sharing, const Settings& settings, Camera
 
 References::References(const std::filesystem::path& file, const Settings& settings) : settings_(settings)
 {
-    Reference reference{.picture = image::read(file).image};
+    image::Loaded loaded = image::read(file);
+    warnings_ = std::move(loaded.warnings);
+    Reference reference{.picture = std::move(loaded.image)};
     const image::Image& picture = reference.picture;
     if (picture.width != settings.width || picture.height != settings.height)
         throw Error("Reference \"{}\" has {}x{} pixels, but --size is {}x{}.", file.string(), picture.width,

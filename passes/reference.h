@@ -52,7 +52,8 @@ class References
     // For the picture after so many frames. Null when stopped before it was made. Throws Error: the cache cannot be
     // written.
     const Reference* after(uint64_t frames);
-    const std::map<uint64_t, Reference>& made() const { return made_; } // by frame; 0 for a resting camera
+    const std::map<uint64_t, Reference>& made() const { return made_; }    // by frame; 0 for a resting camera
+    const std::vector<std::string>& warnings() const { return warnings_; } // about the file, for the person
 
   private:
     void traceBatch(uint64_t batch, uint64_t frames);
@@ -63,6 +64,7 @@ class References
     Options options_;
     std::unique_ptr<Renderer> renderer_; // null: all are made
     std::map<uint64_t, Reference> made_;
+    std::vector<std::string> warnings_;
 };
 
 } // namespace passes

@@ -80,7 +80,7 @@ void visitSettings(AnySettings& s, Visitor&& visit)
     visit(Knob{"frames", 1, 1073741824, "frames", "How many frames to render, each one sample per pixel. Cost grows with it. Unbiased."}, s.frames);
     visit(Knob{"seconds", 0, 1e7, "s", "Stop after this time of rendering instead of after a number of frames; 0: by frames. Unbiased."}, s.seconds);
     visit(Knob{"average", 0, 0, "", "on: write the mean of all frames; off: write the last frame. Both unbiased; free."}, s.average);
-    visit(Knob{"environment", 0, 0, "", "Equirectangular picture (.exr or .hdr) that surrounds the scene; empty: the scene's own."}, s.environment);
+    visit(Knob{"environment", 0, 0, "", "Equirectangular picture (.exr or .hdr) that surrounds the scene: its middle lies towards +x, to the right of that +z, its left and right edges towards -x, its top row above (+y); a camera that is not turned looks along -z, a quarter from the left. Empty: the scene's own."}, s.environment);
     visit(Knob{"environment-scale", 0, 1e6, "", "Multiplies the radiance of the environment. Changes the scene, not the estimate; free."}, s.environmentScale);
     // clang-format on
 }

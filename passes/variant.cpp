@@ -60,6 +60,7 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
     v.HAS_TRANSMISSION_TEXTURE = features.transmissionTexture;
     v.HAS_SPECULAR_TEXTURE = features.specularTexture;
     v.HAS_MANY_MATERIALS = features.manyMaterials;
+    v.HAS_DEEP_TEXTURE = features.deepTexture;
     return v;
 }
 

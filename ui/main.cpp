@@ -1,5 +1,5 @@
 // Command line to command; the one place that catches Error. Exit codes: 0 done, 1 the world is wrong, 2 wrong usage,
-// 130 interrupted.
+// 130 interrupted by Ctrl-C, 143 by SIGTERM.
 
 #include "engine/base/error.h"
 #include "ui/cli/help.h"

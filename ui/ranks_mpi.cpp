@@ -53,7 +53,8 @@ class Mpi : public Ranks
 
     int finish(int exitCode) const override
     {
-        if (exitCode != 0 && exitCode != EXIT_INTERRUPTED) MPI_Abort(MPI_COMM_WORLD, exitCode); // else the others wait
+        if (exitCode != 0 && exitCode != Interrupt::exitCode())
+            MPI_Abort(MPI_COMM_WORLD, exitCode); // else the others wait
         MPI_Finalize();
         return exitCode;
     }

@@ -2,6 +2,8 @@
 
 #include "engine/base/error.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,6 +21,8 @@ struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using File = std::unique_ptr<std::FILE, Close>;
+
+constexpr int MAX_LINKS = 40; // as Linux follows
 
 // A file to be written, without a name where the file system has such: then nothing is left of it unless name() is
 // reached, whatever ends the process.
@@ -56,6 +60,34 @@ class Target
     bool nameless_ = false;
 };
 
+// False: errno says why.
+bool writeAll(int descriptor, std::span<const Bytes> pieces)
+{
+    for (Bytes piece : pieces)
+        while (!piece.empty()) {
+            const ssize_t written = ::write(descriptor, piece.data(), piece.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) return false;
+            piece = piece.subspan(size_t(written));
+        }
+    return true;
+}
+
+Error failure(const std::filesystem::path& path, const char* what, int reason)
+{
+    return Error("Cannot write \"{}\": {} ({}).", path.string(), what, std::strerror(reason));
+}
+
+void writeToDevice(const std::filesystem::path& path, std::span<const Bytes> pieces)
+{
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC, 0);
+    if (descriptor < 0) throw failure(path, "cannot open it", errno);
+    const bool whole = writeAll(descriptor, pieces);
+    const int reason = errno;
+    ::close(descriptor);
+    if (!whole) throw failure(path, "short write", reason);
+}
+
 } // namespace
 
 std::vector<std::byte> read(const std::filesystem::path& path, uint64_t maxBytes)
@@ -83,27 +115,61 @@ void writeAtomically(const std::filesystem::path& path, Bytes bytes)
 
 void writeAtomically(const std::filesystem::path& path, std::span<const Bytes> pieces)
 {
-    std::filesystem::path temporary = path;
+    if (isDevice(path)) return writeToDevice(path, pieces);
+    const std::filesystem::path file = resolved(path);
+    std::filesystem::path temporary = file;
     temporary += fmt::format(".{}.tmp", ::getpid());
     const auto fail = [&](const char* what) -> Error {
         const int reason = errno;
         std::error_code ignored;
         std::filesystem::remove(temporary, ignored);
-        return Error("Cannot write \"{}\": {} ({}).", path.string(), what, std::strerror(reason));
+        return failure(path, what, reason);
     };
 
     const Target target(temporary);
     if (!target.opened()) throw fail("cannot create a file there");
-    for (Bytes piece : pieces)
-        while (!piece.empty()) {
-            const ssize_t written = ::write(target.descriptor(), piece.data(), piece.size());
-            if (written < 0 && errno == EINTR) continue;
-            if (written <= 0) throw fail("short write");
-            piece = piece.subspan(size_t(written));
-        }
+    if (!writeAll(target.descriptor(), pieces)) throw fail("short write");
     if (::fsync(target.descriptor()) != 0) throw fail("cannot bring it to the disk");
     if (!target.name()) throw fail("cannot name the file");
-    if (std::rename(temporary.c_str(), path.c_str()) != 0) throw fail("cannot rename into place");
+    if (std::rename(temporary.c_str(), file.c_str()) != 0) throw fail("cannot rename into place");
+}
+
+std::filesystem::path resolved(const std::filesystem::path& path)
+{
+    std::filesystem::path file = path;
+    std::error_code failed;
+    for (int links = 0; links < MAX_LINKS && std::filesystem::is_symlink(file, failed); ++links) {
+        const std::filesystem::path target = std::filesystem::read_symlink(file, failed);
+        if (failed) break;
+        file = file.parent_path() / target; // an absolute one stands alone
+    }
+    if (std::filesystem::is_symlink(file, failed))
+        throw Error("Cannot follow the symbolic link \"{}\": it leads to no end.", path.string());
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    const std::filesystem::path real = std::filesystem::weakly_canonical(folder, failed);
+    return failed ? file : real / file.filename();
+}
+
+bool isDevice(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+           !std::filesystem::is_directory(status);
+}
+
+bool areSame(const std::filesystem::path& a, const std::filesystem::path& b)
+{
+    if (isDevice(a) || isDevice(b)) return false;
+    std::error_code ignored; // of what is not there
+    return std::filesystem::equivalent(a, b, ignored) || resolved(a) == resolved(b);
+}
+
+std::string extensionOf(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
 }
 
 } // namespace files

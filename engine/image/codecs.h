@@ -25,15 +25,18 @@ struct Raster {
 bool isPng(std::span<const std::byte> bytes);
 bool isJpeg(std::span<const std::byte> bytes);
 
+uint32_t pngBitDepth(std::span<const std::byte> bytes); // of a sample in the file; 0: too short to say
+
 // `metadata`, when given, receives the text chunks. Throws Error: "<what> is ..." with the decoder's reason.
 template <class Sample>
 Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr);
 
 Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& what);
 
-// OpenEXR: R, G and B, or Y alone, of any channel type.
+// OpenEXR: R, G and B, or Y alone, of any channel type. `transparent`, when given, says whether A is anywhere not 1.
 bool isExr(std::span<const std::byte> bytes);
-Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr);
+Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr,
+                bool* transparent = nullptr);
 std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata);
 
 // Radiance RGBE.

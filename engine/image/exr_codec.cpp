@@ -91,6 +91,15 @@ Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int fir
     return {Imf::FLOAT, base, sizeof(glm::vec3), static_cast<size_t>(width) * sizeof(glm::vec3)};
 }
 
+// The same of channel A, alone in `alphas`.
+Imf::Slice alphaSliceOf(std::vector<float>& alphas, const Imath::Box2i& window, int firstRow)
+{
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+    auto* base = reinterpret_cast<char*>(alphas.data()) -
+                 static_cast<int64_t>(sizeof(float)) * (firstRow * width + window.min.x);
+    return {Imf::FLOAT, base, sizeof(float), static_cast<size_t>(width) * sizeof(float)};
+}
+
 // Throws where the header claims more than a file of so many bytes can hold. To be asked before OpenEXR takes memory
 // for the pixels: it goes by the header alone.
 void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what)
@@ -117,11 +126,14 @@ void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what
                     std::min(rows, height), bytesPerPixel, MAX_BLOCK_BYTES);
 }
 
-Image readPixels(Imf::InputPart& file, bool gray)
+Image readPixels(Imf::InputPart& file, bool gray, bool* transparent)
 {
     const Imath::Box2i& window = file.header().dataWindow();
     const auto width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
     Image image{width, 0, {}};
+    const bool hasAlpha = transparent && file.header().channels().findChannel("A");
+    const auto rowsAtOnce = static_cast<size_t>(std::min(ROWS_AT_ONCE, window.max.y - window.min.y + 1));
+    std::vector<float> alphas(hasAlpha ? width * rowsAtOnce : 0);
     for (int y = window.min.y; y <= window.max.y; y += ROWS_AT_ONCE) {
         const int last = std::min(y + ROWS_AT_ONCE - 1, window.max.y);
         image.height += static_cast<uint32_t>(last - y + 1);
@@ -132,8 +144,11 @@ Image readPixels(Imf::InputPart& file, bool gray)
             buffer.insert("Y", sliceOf(rows, 0, window, y));
         else
             for (int c = 0; c < 3; ++c) buffer.insert(std::string(1, "RGB"[c]), sliceOf(rows, c, window, y));
+        if (hasAlpha) buffer.insert("A", alphaSliceOf(alphas, window, y));
         file.setFrameBuffer(buffer);
         file.readPixels(y, last);
+        const auto end = alphas.begin() + (hasAlpha ? ptrdiff_t{width} * (last - y + 1) : 0);
+        if (std::any_of(alphas.begin(), end, [](float alpha) { return alpha != 1; })) *transparent = true;
     }
     if (gray) {
         for (glm::vec3& pixel : image.pixels) pixel = glm::vec3(pixel.x);
@@ -159,7 +174,7 @@ Metadata readMetadata(const Imf::Header& header)
     return metadata;
 }
 
-Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
+Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent)
 {
     checkAttributes(bytes, what);
     MemoryInput input(bytes);
@@ -174,7 +189,7 @@ Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata
     checkClaim(header, bytes.size(), what);
     if (metadata) *metadata = readMetadata(header);
     Imf::InputPart file(parts, 0);
-    return readPixels(file, !color);
+    return readPixels(file, !color, transparent);
 }
 
 } // namespace
@@ -184,10 +199,10 @@ bool isExr(std::span<const std::byte> bytes)
     return bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
 }
 
-Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
+Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent)
 {
     try {
-        return decode(bytes, what, metadata);
+        return decode(bytes, what, metadata, transparent);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& reason) {

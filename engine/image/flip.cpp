@@ -1,5 +1,6 @@
 #include "engine/image/flip.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -55,11 +56,16 @@ double hyab(const glm::dvec3& a, const glm::dvec3& b)
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
 
-Planes opponentPlanes(const Image& picture)
+// Of the light above 0, or of that below.
+enum class Part { Above, Below };
+
+Planes opponentPlanes(const Image& picture, Part part)
 {
     Planes planes = {tonemapped(picture, 0), tonemapped(picture, 1), tonemapped(picture, 2)};
+    const double sign = part == Part::Above ? 1 : -1;
     for (size_t i = 0; i < picture.pixels.size(); ++i) {
-        const glm::dvec3 color = opponentFromRgb({planes[0].values[i], planes[1].values[i], planes[2].values[i]});
+        const glm::dvec3 rgb(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
+        const glm::dvec3 color = opponentFromRgb(glm::max(sign * rgb, 0.0));
         for (int c = 0; c < 3; ++c) planes[size_t(c)].values[i] = color[c];
     }
     return planes;
@@ -151,12 +157,9 @@ double redistributed(double distance)
     return error < KNEE ? error * KNEE_ERROR / KNEE : KNEE_ERROR + (error - KNEE) / (1 - KNEE) * (1 - KNEE_ERROR);
 }
 
-} // namespace
-
-Plane flipErrors(const Image& reference, const Image& picture)
+Plane errorsOf(const Image& reference, const Image& picture, Part part)
 {
-    requireComparable(reference, picture);
-    const Planes a = opponentPlanes(reference), b = opponentPlanes(picture);
+    const Planes a = opponentPlanes(reference, part), b = opponentPlanes(picture, part);
     const std::vector<glm::dvec3> colorsA = perceivedColors(a), colorsB = perceivedColors(b);
     const Features featuresA = featuresOf(a[0]), featuresB = featuresOf(b[0]);
 
@@ -167,6 +170,18 @@ Plane flipErrors(const Image& reference, const Image& picture)
                                         std::abs(featuresA.points[i] - featuresB.points[i]));
         errors.values[i] = std::pow(color, 1 - std::sqrt(feature / std::numbers::sqrt2));
     }
+    return errors;
+}
+
+} // namespace
+
+Plane flipErrors(const Image& reference, const Image& picture)
+{
+    requireComparable(reference, picture);
+    Plane errors = errorsOf(reference, picture, Part::Above);
+    if (countBelowZero(reference) + countBelowZero(picture) == 0) return errors;
+    const Plane below = errorsOf(reference, picture, Part::Below);
+    for (size_t i = 0; i < errors.values.size(); ++i) errors.values[i] = std::max(errors.values[i], below.values[i]);
     return errors;
 }
 

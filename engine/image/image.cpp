@@ -1,7 +1,6 @@
 #include "engine/image/image.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -18,14 +17,6 @@ namespace
 
 // Tells read() that a PNG is tonemapped by us.
 const Metadata::value_type TONEMAPPED = {"tonemapping", "Reinhard c/(c+1), sRGB"};
-
-std::string extensionOf(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 // IEC 61966-2-1, both ways.
 double encodeSrgb(double linear)
@@ -66,6 +57,14 @@ Image linearFrom(const Raster<Sample>& raster, bool tonemapped)
     return image;
 }
 
+template <class Sample>
+bool isTransparent(const Raster<Sample>& raster)
+{
+    for (size_t i = 3; i < raster.rgba.size(); i += 4)
+        if (raster.rgba[i] != std::numeric_limits<Sample>::max()) return true;
+    return false;
+}
+
 } // namespace
 
 std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata)
@@ -80,7 +79,7 @@ std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata)
 
 void requireWritable(const std::filesystem::path& path)
 {
-    const std::string extension = extensionOf(path);
+    const std::string extension = files::extensionOf(path);
     if (extension != ".exr" && extension != ".png")
         throw Error("Cannot write \"{}\": the name must end in .exr or .png.", path.string());
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
@@ -95,7 +94,7 @@ void write(const std::filesystem::path& path, const Image& image, const Metadata
 {
     CHECK_EQ(image.pixels.size(), size_t{image.width} * image.height);
     requireWritable(path);
-    const bool exr = extensionOf(path) == ".exr";
+    const bool exr = files::extensionOf(path) == ".exr";
     files::writeAtomically(path, exr ? encodeExr(image, metadata) : tonemappedPng(image, metadata));
 }
 
@@ -104,19 +103,24 @@ Loaded read(const std::filesystem::path& path)
     const std::vector<std::byte> bytes = files::read(path);
     const std::string what = fmt::format("Picture \"{}\"", path.string());
     Loaded loaded;
+    bool transparent = false;
     if (isExr(bytes)) {
-        loaded.image = decodeExr(bytes, what, &loaded.metadata);
+        loaded.image = decodeExr(bytes, what, &loaded.metadata, &transparent);
     } else if (isHdr(bytes)) {
         loaded.image = decodeHdr(bytes, what);
     } else if (isPng(bytes)) {
         const auto raster = decodePng<uint16_t>(bytes, what, &loaded.metadata);
         const auto& metadata = loaded.metadata;
+        transparent = isTransparent(raster);
         loaded.image = linearFrom(raster, std::find(metadata.begin(), metadata.end(), TONEMAPPED) != metadata.end());
     } else if (isJpeg(bytes)) {
         loaded.image = linearFrom(decodeJpeg(bytes, what), false);
     } else {
         throw Error("{} ({} bytes) is neither EXR, HDR, PNG nor JPEG.", what, bytes.size());
     }
+    if (transparent)
+        loaded.warnings.push_back(
+            fmt::format("{} has an alpha channel that is not 1 everywhere: it is ignored.", what));
     return loaded;
 }
 

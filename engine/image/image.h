@@ -38,9 +38,11 @@ void requireWritable(const std::filesystem::path& path);
 struct Loaded {
     Image image;
     Metadata metadata;
+    std::vector<std::string> warnings; // sentences for the person: what of the file is ignored
 };
 // EXR (any channel type; R G B, or Y alone), Radiance HDR, PNG (8/16 bit, decoded sRGB and, when our metadata says so,
-// un-tonemapped) or JPEG, told apart by their first bytes. Pixels as the file has them, non-finite ones too.
+// un-tonemapped) or JPEG, told apart by their first bytes. Pixels as the file has them, non-finite ones too. Alpha is
+// ignored, with a warning where it is not 1.
 // Throws Error: missing, malformed, larger than 2^28 pixels or than the file could hold.
 Loaded read(const std::filesystem::path& path);
 

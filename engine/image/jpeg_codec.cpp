@@ -111,6 +111,11 @@ Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& 
     if (width * height > MAX_PIXELS_PER_BYTE * bytes.size())
         throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes.size());
 
+    const J_COLOR_SPACE colors = reader.decoder.jpeg_color_space;
+    if (colors == JCS_CMYK || colors == JCS_YCCK)
+        throw Error("{} is a JPEG of printing inks (CMYK), whose colors depend on paper and press: save it as RGB.",
+                    what);
+
     Raster<uint8_t> raster{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
     raster.rgba.resize(width * height * 4);
     if (!readRows(reader, raster.rgba.data())) throw malformed();

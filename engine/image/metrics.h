@@ -25,7 +25,8 @@ inline glm::dvec3 yCoCg(const glm::dvec3& rgb)
     return {rgb.r / 4 + rgb.g / 2 + rgb.b / 4, (rgb.r - rgb.b) / 2, rgb.g / 2 - (rgb.r + rgb.b) / 4};
 }
 
-// Throws Error: other sizes, a value that is not finite. Values below 0 are tonemapped as 0.
+// Throws Error: other sizes, a value that is not finite. Values below 0 count: c/(c+1) goes on as c/(1+|c|) for PSNR
+// and SSIM, and flip.h says what FLIP makes of them.
 Metrics measure(const Image& reference, const Image& picture);
 
 } // namespace image

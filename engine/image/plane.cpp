@@ -29,8 +29,8 @@ Plane tonemapped(const Image& picture, int channel)
     Plane plane{int(picture.width), int(picture.height), {}};
     plane.values.reserve(picture.pixels.size());
     for (const glm::vec3& pixel : picture.pixels) {
-        const double value = std::max(double(pixel[channel]), 0.0);
-        plane.values.push_back(value / (1 + value));
+        const double value = pixel[channel];
+        plane.values.push_back(value / (1 + std::abs(value)));
     }
     return plane;
 }
@@ -69,6 +69,14 @@ std::vector<double> gaussian(double sigma, int radius)
     std::vector<double> kernel;
     for (int x = -radius; x <= radius; ++x) kernel.push_back(std::exp(-x * x / (2 * sigma * sigma)));
     return kernel;
+}
+
+size_t countBelowZero(const Image& picture)
+{
+    size_t count = 0;
+    for (const glm::vec3& pixel : picture.pixels)
+        for (int c = 0; c < 3; ++c) count += pixel[c] < 0;
+    return count;
 }
 
 void requireComparable(const Image& reference, const Image& picture)

@@ -14,7 +14,7 @@ struct Plane {
     std::vector<double> values; // row 0 at the top
 };
 
-// c/(c+1) of one channel; values below 0 count as 0.
+// c/(1+|c|) of one channel: c/(c+1), and odd, so that what is below 0 is as far from it as what is above.
 Plane tonemapped(const Image& picture, int channel);
 
 // The sum over the window of kernel times pixel: columns of it `alongX`, rows `alongY`, both of odd size and about the
@@ -23,6 +23,9 @@ Plane filtered(const Plane& plane, std::span<const double> alongX, std::span<con
 
 // exp(-x^2 / (2 sigma^2)) at x = -radius .. radius.
 std::vector<double> gaussian(double sigma, int radius);
+
+// Of the values of a picture, three a pixel.
+size_t countBelowZero(const Image& picture);
 
 // Throws Error: other sizes, no pixels, a value that is not finite.
 void requireComparable(const Image& reference, const Image& picture);

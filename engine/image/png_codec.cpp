@@ -137,6 +137,12 @@ bool isPng(std::span<const std::byte> bytes)
     return bytes.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) == 0;
 }
 
+// Its header comes first (PNG, 11.2.2): 8 bytes of signature, 8 of the chunk's length and type, width, height, depth.
+uint32_t pngBitDepth(std::span<const std::byte> bytes)
+{
+    return bytes.size() > 24 ? static_cast<uint32_t>(bytes[24]) : 0;
+}
+
 template <class Sample>
 Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata)
 {

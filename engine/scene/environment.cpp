@@ -96,7 +96,9 @@ void setEnvironment(Scene& scene, const std::filesystem::path& file, float scale
     if (!file.empty()) {
         Warnings warnings;
         const std::string what = fmt::format("Environment \"{}\"", file.string());
-        scene.environment = environmentFrom(image::read(file).image, what, warnings);
+        const image::Loaded loaded = image::read(file);
+        for (const std::string& sentence : loaded.warnings) warnings.add(sentence);
+        scene.environment = environmentFrom(loaded.image, what, warnings);
         for (const std::string& sentence : warnings.sentences()) scene.warnings.push_back(sentence);
     }
     for (glm::vec3& texel : scene.environment.radiance) texel *= scale;

@@ -10,7 +10,6 @@
 #include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "engine/scene/gltf_json_checks.h"
-#include "engine/scene/gltf_uri.h"
 
 namespace scene::gltf
 {
@@ -57,28 +56,29 @@ Container openBinary(std::span<const std::byte> bytes)
         if (chunk == 1 && type == BINARY_CHUNK) container.binary = content;
         offset += std::min<size_t>((chunkLength + size_t{3}) / 4 * 4, bytes.size() - offset);
     }
+    while (!container.json.empty() && container.json.back() == std::byte{0}) // padding, if not by the book
+        container.json = container.json.first(container.json.size() - 1);
     return container;
 }
 
-std::vector<std::vector<std::byte>> readBuffers(const Object& document, const std::filesystem::path& folder,
-                                                std::optional<std::span<const std::byte>> binary)
+void readBuffers(const Object& root, std::optional<std::span<const std::byte>> binary, Document& document)
 {
-    std::vector<std::vector<std::byte>> buffers;
     uint64_t budget = MAX_FILE_BYTES; // for all together: buffers may name the same file again and again
-    document.eachObject("buffers", [&](const Object& buffer, size_t i) {
+    root.eachObject("buffers", [&](const Object& buffer, size_t i) {
         const uint64_t length = buffer.integer("byteLength", 1, ~uint64_t{0}).value();
         const std::string* uri = buffer.string("uri");
         if (!uri && (i != 0 || !binary))
             throw Error("{} has no \"uri\" and there is no GLB chunk for it.", buffer.path());
-        std::vector<std::byte> bytes = uri ? readUri(*uri, folder) : std::vector(binary->begin(), binary->end());
+        std::vector<std::byte> bytes =
+            uri ? readUri(*uri, document.folders) : std::vector(binary->begin(), binary->end());
         if (bytes.size() < length)
             throw Error("{} is {}, but its data has {} bytes.", buffer.path("byteLength"), length, bytes.size());
         if (bytes.size() > budget) throw Error("The buffers hold more than {} bytes together.", MAX_FILE_BYTES);
         budget -= bytes.size();
         bytes.resize(length);
-        buffers.push_back(std::move(bytes));
+        document.buffers.push_back(std::move(bytes));
+        if (const auto file = uri ? fileOf(*uri, document.folders) : std::nullopt) document.files.push_back(*file);
     });
-    return buffers;
 }
 
 std::vector<ImageSource> listImages(const Object& document)
@@ -152,7 +152,7 @@ std::span<const std::byte> Document::view(int bufferView) const
     return std::span(buffers[static_cast<size_t>(view.buffer)]).subspan(view.byteOffset, view.byteLength);
 }
 
-Document openDocument(const std::filesystem::path& file, Warnings& warnings)
+Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, Warnings& warnings)
 {
     const std::vector<std::byte> bytes = files::read(file, MAX_FILE_BYTES);
     const bool isBinary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
@@ -161,8 +161,8 @@ Document openDocument(const std::filesystem::path& file, Warnings& warnings)
     Json json = parseJson<Json>(container.json);
     checkJson(json);
     const Object root(json);
-    Document document{.folder = file.parent_path(), .model = {}, .buffers = {}, .images = listImages(root)};
-    document.buffers = readBuffers(root, document.folder, container.binary);
+    Document document{.folders = {file.parent_path(), assetRoot}, .images = listImages(root)};
+    readBuffers(root, container.binary, document);
     warnOfIgnored(root, warnings);
     document.model = parseModel(std::move(json));
     return document;

@@ -91,14 +91,15 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     };
     Warnings warnings;
     report("Reading")(0);
-    const gltf::Document document = gltf::openDocument(file, warnings);
+    const gltf::Document document = gltf::openDocument(file, options.assetRoot, warnings);
     const gltf::NodeTree tree = gltf::resolveNodes(document, warnings);
     Scene scene;
     scene.name = file.stem().string();
     scene.materials = gltf::readMaterials(document, warnings);
     gltf::readGeometry(document, tree, scene, warnings, report("Building geometry"));
     keepUsedMaterials(scene);
-    scene.images = gltf::readImages(document, scene.materials, report("Decoding images"));
+    scene.files = document.files;
+    scene.images = gltf::readImages(document, scene.materials, scene.files, report("Decoding images"));
     scene.cameras = gltf::readCameras(document, tree, warnings);
     placeCameras(scene, warnings);
     placeLights(scene, gltf::readLights(document, tree, warnings));

@@ -14,6 +14,7 @@ struct LoadOptions {
     std::function<void(const std::string& what, double fraction)>
         progress;    // may be empty; called on the caller's thread
     bool sky = true; // a file without light gets a uniform sky; false: the caller has an environment for it
+    std::filesystem::path assetRoot; // buffers and textures may lie below it, too; empty: below the file's folder alone
 };
 
 // The file's default scene, in its default pose. Throws Error: one sentence naming the file, the object and the value.

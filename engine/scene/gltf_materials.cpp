@@ -9,7 +9,6 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_json.h"
-#include "engine/scene/gltf_uri.h"
 #include "engine/scene/gltf_values.h"
 #include "engine/scene/texture_image.h"
 
@@ -178,7 +177,7 @@ Material MaterialReader::read(const tinygltf::Material& source)
 Image readImage(const Document& document, const ImageSource& source)
 {
     if (source.bufferView >= 0) return decodeTexture(document.view(source.bufferView), source.name);
-    return decodeTexture(readUri(source.uri, document.folder), source.name);
+    return decodeTexture(readUri(source.uri, document.folders), source.name);
 }
 
 } // namespace
@@ -193,7 +192,7 @@ std::vector<Material> readMaterials(const Document& document, Warnings& warnings
 }
 
 std::vector<Image> readImages(const Document& document, std::vector<Material>& materials,
-                              const std::function<void(double)>& progress)
+                              std::vector<std::filesystem::path>& files, const std::function<void(double)>& progress)
 {
     std::vector<uint32_t> newIndex(document.images.size(), NONE), used;
     for (Material& material : materials) {
@@ -232,6 +231,11 @@ std::vector<Image> readImages(const Document& document, std::vector<Material>& m
     helper.join();
     for (const std::exception_ptr& failure : failures) {
         if (failure) std::rethrow_exception(failure);
+    }
+    for (const uint32_t index : used) {
+        const ImageSource& source = document.images[index];
+        if (const auto file = source.bufferView < 0 ? fileOf(source.uri, document.folders) : std::nullopt)
+            files.push_back(*file);
     }
     return images;
 }

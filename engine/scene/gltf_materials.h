@@ -24,8 +24,9 @@ void eachTexture(AnyMaterial& material, Visit&& visit)
     }
 }
 
-// Decodes the images that `materials` use, on two threads, and points the uses to them. Throws Error.
+// Decodes the images that `materials` use, on two threads, and points the uses to them. Adds to `files` those that they
+// came from. Throws Error.
 std::vector<Image> readImages(const Document& document, std::vector<Material>& materials,
-                              const std::function<void(double)>& progress);
+                              std::vector<std::filesystem::path>& files, const std::function<void(double)>& progress);
 
 } // namespace scene::gltf

@@ -67,6 +67,15 @@ bool isInside(const std::filesystem::path& path, const std::filesystem::path& fo
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
+std::filesystem::path canonicalFolder(const std::filesystem::path& folder)
+{
+    std::error_code failure;
+    const std::filesystem::path canonical = std::filesystem::canonical(folder, failure);
+    if (failure || !std::filesystem::is_directory(canonical))
+        throw Error("Cannot find the folder \"{}\".", folder.string());
+    return canonical;
+}
+
 } // namespace
 
 std::vector<std::byte> decodeBase64(std::string_view text)
@@ -96,26 +105,37 @@ std::vector<std::byte> decodeBase64(std::string_view text)
     return bytes;
 }
 
-std::vector<std::byte> readUri(const std::string& uri, const std::filesystem::path& folder)
+std::optional<std::filesystem::path> fileOf(const std::string& uri, const Folders& folders)
 {
-    if (uri.starts_with("data:")) return readDataUri(uri);
+    if (uri.starts_with("data:")) return std::nullopt;
     if (hasScheme(uri)) throw Error("The URI \"{}\" has a scheme; only data: and relative paths are read.", shown(uri));
     const std::string relative = decodePercent(uri);
     if (relative.empty()) throw Error("A URI is empty.");
     if (relative.size() > MAX_PATH_LENGTH) throw Error("The URI \"{}\" is {} bytes long.", shown(uri), uri.size());
     if (relative.find('\0') != std::string::npos) throw Error("The URI \"{}\" contains a NUL.", shown(uri));
 
-    // Lexically first, so that the answer does not depend on what exists outside; then for links that lead out.
-    const std::filesystem::path path(relative);
-    const auto leaves = [&] { return Error("The URI \"{}\" leads out of the asset's folder.", shown(uri)); };
-    if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) throw leaves();
+    const std::filesystem::path own = canonicalFolder(folders.own.empty() ? "." : folders.own);
+    const std::filesystem::path root = folders.root.empty() ? own : canonicalFolder(folders.root);
+    const bool absolute = std::filesystem::path(relative).is_absolute();
+    const auto requireAllowed = [&](const std::filesystem::path& file) {
+        if (!absolute && (isInside(file, own) || isInside(file, root))) return;
+        throw Error("The URI \"{}\" leads out of the asset's folder{}.", shown(uri),
+                    folders.root.empty() ? "; --asset-root DIR lets files lie anywhere below DIR"
+                                         : fmt::format(" and out of --asset-root \"{}\"", folders.root.string()));
+    };
+    // By its words first, so that the answer does not depend on what exists outside; then for links that lead out.
+    requireAllowed((own / relative).lexically_normal());
     std::error_code failure;
-    const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, failure);
-    if (failure) throw Error("Cannot find the folder \"{}\".", folder.string());
-    const std::filesystem::path target = std::filesystem::canonical(root / path, failure);
+    const std::filesystem::path target = std::filesystem::canonical(own / relative, failure);
     if (failure) throw Error("Cannot read \"{}\": {}.", shown(relative), failure.message());
-    if (!isInside(target, root)) throw leaves();
-    return files::read(target, MAX_FILE_BYTES);
+    requireAllowed(target);
+    return target;
+}
+
+std::vector<std::byte> readUri(const std::string& uri, const Folders& folders)
+{
+    const std::optional<std::filesystem::path> file = fileOf(uri, folders);
+    return file ? files::read(*file, MAX_FILE_BYTES) : readDataUri(uri);
 }
 
 } // namespace scene::gltf

@@ -34,9 +34,9 @@ double linearFromSrgb(double c)
 double meanOfLargest(const Image& image)
 {
     double sum = 0;
-    for (size_t i = 0; i < image.rgba.size(); i += 4)
-        sum += linearFromSrgb(std::max(std::max(image.rgba[i], image.rgba[i + 1]), image.rgba[i + 2]) / 255.0);
-    return sum / (double(image.rgba.size()) / 4);
+    for (size_t i = 0; i < image.sampleCount(); i += 4)
+        sum += linearFromSrgb(std::max(std::max(image.sample(i), image.sample(i + 1)), image.sample(i + 2)));
+    return sum / (double(image.sampleCount()) / 4);
 }
 
 // Intensity in scaled lengths: E = I / d^2 stays the same irradiance.

@@ -31,12 +31,12 @@ bool isIdentity(const TextureUse& use)
 // Smallest and largest value of the image's green channel (roughness), in [0, 1].
 std::pair<float, float> greenRange(const Image& image)
 {
-    uint8_t low = 255, high = 0;
-    for (size_t i = 1; i < image.rgba.size(); i += 4) {
-        low = std::min(low, image.rgba[i]);
-        high = std::max(high, image.rgba[i]);
+    double low = 1, high = 0;
+    for (size_t i = 1; i < image.sampleCount(); i += 4) {
+        low = std::min(low, image.sample(i));
+        high = std::max(high, image.sample(i));
     }
-    return {float(low) / 255.0f, float(high) / 255.0f};
+    return {float(low), float(high)};
 }
 
 class Builder
@@ -106,6 +106,7 @@ class Builder
         if (use.nearest) flags |= shared::TEXTURE_NEAREST;
         if (use.uvSet == 1) flags |= shared::TEXTURE_SECOND_UV;
         if (srgb) flags |= shared::TEXTURE_SRGB;
+        if (!image.deep.empty()) flags |= shared::TEXTURE_DEEP;
         rows.emplace_back(firstBlock(use.image), image.width | image.height << 16, flags, 0);
         rows.push_back(row(use.row0.x, use.row0.y, use.row0.z, 0));
         rows.push_back(row(use.row1.x, use.row1.y, use.row1.z, 0));
@@ -118,16 +119,31 @@ class Builder
         if (!isNew) return entry->second;
         const Image& image = scene_.images[imageIndex];
         CHECK(image.width > 0 && image.height > 0 && image.width < 65536 && image.height < 65536);
+        for (uint32_t y = 0; y < image.height; y += 2)
+            for (uint32_t x = 0; x < image.width; x += 2) addBlock(image, x, y);
+        return entry->second;
+    }
+
+    // Four texels, as shaders/scene/texture.glsl reads them.
+    void addBlock(const Image& image, uint32_t left, uint32_t top)
+    {
+        const auto start = [&](uint32_t x, uint32_t y) { // the odd edge of the last block is never read
+            return 4 * (size_t{std::min(y, image.height - 1)} * image.width + std::min(x, image.width - 1));
+        };
         const auto texel = [&](uint32_t x, uint32_t y) {
-            x = std::min(x, image.width - 1); // the odd edge of the last block is never read
-            y = std::min(y, image.height - 1);
-            const uint8_t* p = &image.rgba[4 * (size_t{y} * image.width + x)];
+            const uint8_t* p = &image.rgba[start(x, y)];
             return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
         };
-        for (uint32_t y = 0; y < image.height; y += 2)
-            for (uint32_t x = 0; x < image.width; x += 2)
-                tables_.texels.emplace_back(texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1));
-        return entry->second;
+        const auto deepTexel = [&](uint32_t x, uint32_t y) {
+            const uint16_t* p = &image.deep[start(x, y)];
+            return glm::uvec2(uint32_t(p[0]) | uint32_t(p[1]) << 16, uint32_t(p[2]) | uint32_t(p[3]) << 16);
+        };
+        if (image.deep.empty())
+            tables_.texels.emplace_back(texel(left, top), texel(left + 1, top), texel(left, top + 1),
+                                        texel(left + 1, top + 1));
+        else
+            for (const uint32_t y : {top, top + 1})
+                tables_.texels.emplace_back(deepTexel(left, y), deepTexel(left + 1, y));
     }
 
     void noteFeatures(const Material& material)
@@ -166,6 +182,7 @@ class Builder
     {
         if (use.image == NONE) return;
         feature = true;
+        tables_.features.deepTexture |= !scene_.images[use.image].deep.empty();
         tables_.features.secondUv |= use.uvSet == 1;
         tables_.features.textureTransform |= !isIdentity(use);
     }

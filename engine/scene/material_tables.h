@@ -10,7 +10,7 @@ namespace scene
 
 struct MaterialTables {
     std::vector<glm::uvec4> rows;   // MATERIAL_ROWS each, of SceneData
-    std::vector<glm::uvec4> texels; // table Texels: 2x2 blocks of RGBA8
+    std::vector<glm::uvec4> texels; // table Texels: 2x2 blocks of RGBA8 or RGBA16
     SceneFeatures features;         // of the materials that triangles use; light kinds are left false
 };
 

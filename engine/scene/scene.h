@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,17 @@ constexpr uint32_t NONE = 0xffffffffu;
 
 enum class Wrap : uint32_t { Repeat, Clamp, Mirror };
 
-// 8-bit RGBA, row 0 first (v = 0 is the top row, as in glTF).
+// RGBA, row 0 first (v = 0 is the top row, as in glTF): 8 bits a sample, or 16 where a file needs them.
 struct Image {
     std::string name;
     uint32_t width = 0;
     uint32_t height = 0;
-    std::vector<uint8_t> rgba; // 4 * width * height; colour images are sRGB-encoded
+    std::vector<uint8_t> rgba;  // 4 * width * height; colour images are sRGB-encoded
+    std::vector<uint16_t> deep; // the same instead of `rgba`, when not empty
+
+    // Of texel i / 4 in rows, channel i % 4: 0 to 1.
+    double sample(size_t i) const { return deep.empty() ? rgba[i] / 255.0 : deep[i] / 65535.0; }
+    size_t sampleCount() const { return size_t{4} * width * height; }
 };
 
 // One use of an image by a material: where to look, and how.
@@ -123,7 +129,8 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras; // at least one after loading
     Environment environment;
-    std::vector<std::string> warnings; // sentences for the person, in order
+    std::vector<std::string> warnings;        // sentences for the person, in order
+    std::vector<std::filesystem::path> files; // that belong to it beside its own: buffers and textures
 };
 
 } // namespace scene

@@ -88,7 +88,8 @@ SceneFeatures everything()
             .emissiveTexture = true,
             .transmissionTexture = true,
             .specularTexture = true,
-            .manyMaterials = true};
+            .manyMaterials = true,
+            .deepTexture = true};
 }
 
 uint32_t attributeRows(const SceneFeatures& features)

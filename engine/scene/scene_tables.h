@@ -41,6 +41,7 @@ struct SceneFeatures {
     bool transmissionTexture = false;
     bool specularTexture = false;
     bool manyMaterials = false;
+    bool deepTexture = false;
 };
 
 // What the tables and shaders provide for: what the scene needs, or everything. The picture is the same.

@@ -1,4 +1,4 @@
-// Material textures: RGBA8 texels in 2x2 blocks of one uvec4, fetched and filtered here (no images, no bindless).
+// Material textures: texels in 2x2 blocks, RGBA8 of one uvec4, RGBA16 of two (a row of the block each), fetched and filtered here (no images, no bindless).
 #ifndef SHADERS_SCENE_TEXTURE_GLSL
 #define SHADERS_SCENE_TEXTURE_GLSL
 
@@ -14,12 +14,21 @@ int wrapTexel(int i, int size, uint mode)
     return j < size ? j : 2 * size - 1 - j;
 }
 
-vec4 fetchTexel(uint firstBlock, int width, ivec2 p, bool srgb)
+vec4 fetchTexel(uint firstBlock, int width, ivec2 p, uint flags)
 {
-    uint block = firstBlock + uint((p.y >> 1) * ((width + 1) >> 1) + (p.x >> 1));
-    uvec4 quad = FETCH(Texels, block);
-    uvec2 pair = (p.y & 1) == 0 ? quad.xy : quad.zw;
-    vec4 texel = unpackUnorm4x8((p.x & 1) == 0 ? pair.x : pair.y);
+    uint block = uint((p.y >> 1) * ((width + 1) >> 1) + (p.x >> 1));
+    bool right = (p.x & 1) != 0;
+    vec4 texel;
+    if (HAS_DEEP_TEXTURE && (flags & TEXTURE_DEEP) != 0u) {
+        uvec4 row = FETCH(Texels, firstBlock + 2u * block + uint(p.y & 1));
+        uvec2 pair = right ? row.zw : row.xy;
+        texel = vec4(unpackUnorm2x16(pair.x), unpackUnorm2x16(pair.y));
+    } else {
+        uvec4 quad = FETCH(Texels, firstBlock + block);
+        uvec2 pair = (p.y & 1) == 0 ? quad.xy : quad.zw;
+        texel = unpackUnorm4x8(right ? pair.y : pair.x);
+    }
+    bool srgb = (flags & TEXTURE_SRGB) != 0u;
     return srgb ? vec4(linearFromSrgb(texel.rgb), texel.a) : texel;
 }
 
@@ -37,7 +46,6 @@ vec4 sampleTexture(uint use, vec2 uv0, vec2 uv1)
     ivec2 size = ivec2(head.y & 0xffffu, head.y >> 16u);
     uint wrapU = (head.z >> TEXTURE_WRAP_U_SHIFT) & 3u;
     uint wrapV = (head.z >> TEXTURE_WRAP_V_SHIFT) & 3u;
-    bool srgb = (head.z & TEXTURE_SRGB) != 0u;
     bool nearest = (head.z & TEXTURE_NEAREST) != 0u;
 
     // Whole double tiles first (a mirrored texture repeats after two), so that large coordinates keep their fraction.
@@ -51,10 +59,10 @@ vec4 sampleTexture(uint use, vec2 uv0, vec2 uv1)
     int y0 = wrapTexel(int(corner.y), size.y, wrapV);
     int x1 = wrapTexel(int(corner.x) + 1, size.x, wrapU);
     int y1 = wrapTexel(int(corner.y) + 1, size.y, wrapV);
-    vec4 t00 = fetchTexel(head.x, size.x, ivec2(x0, y0), srgb);
-    vec4 t10 = fetchTexel(head.x, size.x, ivec2(x1, y0), srgb);
-    vec4 t01 = fetchTexel(head.x, size.x, ivec2(x0, y1), srgb);
-    vec4 t11 = fetchTexel(head.x, size.x, ivec2(x1, y1), srgb);
+    vec4 t00 = fetchTexel(head.x, size.x, ivec2(x0, y0), head.z);
+    vec4 t10 = fetchTexel(head.x, size.x, ivec2(x1, y0), head.z);
+    vec4 t01 = fetchTexel(head.x, size.x, ivec2(x0, y1), head.z);
+    vec4 t11 = fetchTexel(head.x, size.x, ivec2(x1, y1), head.z);
     return mix(mix(t00, t10, f.x), mix(t01, t11, f.x), f.y);
 }
 

@@ -48,6 +48,7 @@ SHARED_CONST uint TEXTURE_WRAP_V_SHIFT = 2u;
 SHARED_CONST uint TEXTURE_NEAREST = 16u;
 SHARED_CONST uint TEXTURE_SECOND_UV = 32u;
 SHARED_CONST uint TEXTURE_SRGB = 64u;
+SHARED_CONST uint TEXTURE_DEEP = 128u; // 16 bits a sample: a block is two rows of table Texels
 
 // Light: alias threshold, alias index, pick probability, kind | index << 2. The index is a triangle or a punctual
 // light.

@@ -34,7 +34,8 @@
     X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")                                 \
     X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")                     \
     X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
-    X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")
+    X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
+    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")
 
 SHARED_BEGIN
 

@@ -99,6 +99,10 @@ INSTANTIATE_TEST_SUITE_P(
         PlantedError{"BumpsHigher", "NormalMap", [](auto& s, auto&) { s.materials[1].normalScale *= 1.5f; }},
         PlantedError{"TextureShifted", "Textures",
                      [](auto& s, auto&) { s.materials[1].baseColorTexture.row0.z += 0.02f; }},
+        PlantedError{"DeepTexelsDarker", "DeepTextures",
+                     [](auto& s, auto&) {
+                         for (uint16_t& sample : s.images[1].deep) sample = uint16_t(sample * 0.95);
+                     }},
         PlantedError{"OneEventLess", "Room", [](auto&, auto& settings) { --settings.maxBounces; }}),
     [](const auto& i) { return i.param.name; });
 

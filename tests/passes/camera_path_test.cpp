@@ -133,6 +133,19 @@ TEST(CameraPath, RefusesWithASentenceThatNamesTheKeyframe)
     EXPECT_EQ(messageOf(keys(good)), "no error");
 }
 
+// JSON's text has no such numbers, but an object may come from elsewhere.
+TEST(CameraPath, RefusesNumbersThatAreNone)
+{
+    const Json good = {{"frame", 3}, {"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}, {"yfov", 40}};
+    ASSERT_NO_THROW(passes::cameraPath({{"keyframes", {good}}}, baseCamera(), {}));
+    for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+        for (const auto& [name, value] : good.items()) {
+            Json key = good;
+            (value.is_array() ? key[name][1] : key[name]) = none;
+            EXPECT_THROW(passes::cameraPath({{"keyframes", {key}}}, baseCamera(), {}), Error) << name << none;
+        }
+}
+
 TEST(CameraPath, AFileThatIsNoJsonIsNamed)
 {
     const std::string file = testing::TempDir() + "camera_path_test.json";

@@ -110,6 +110,8 @@ TEST(Settings, RangesAreClosedAndHold)
             EXPECT_THROW(passes::set(at, knob.name, fmt::format("{}", knob.low - 1)), Error) << knob.name;
             EXPECT_THROW(passes::set(at, knob.name, fmt::format("{}", knob.high + 1)), Error) << knob.name;
             EXPECT_THROW(passes::apply(at, Json{{knob.name, knob.high + 1}}), Error) << knob.name;
+            for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+                EXPECT_THROW(passes::apply(at, Json{{knob.name, none}}), Error) << knob.name << none;
         }
     });
 }

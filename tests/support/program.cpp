@@ -22,12 +22,13 @@ Outcome runProgram(const std::filesystem::path& program, const Launch& launch)
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, outFile.c_str(), FLAGS, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errFile.c_str(), FLAGS, 0600);
 
-    // A shell's "&" makes what it starts ignore Ctrl-C, and a child inherits that: here each can be interrupted.
+    // A shell's "&" makes what it starts ignore Ctrl-C, nohup that the terminal is gone, and a child inherits that:
+    // here each can be interrupted.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t heeded;
     sigemptyset(&heeded);
-    sigaddset(&heeded, SIGINT);
+    for (const int signal : {SIGINT, SIGHUP}) sigaddset(&heeded, signal);
     posix_spawnattr_setsigdefault(&attributes, &heeded);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
 

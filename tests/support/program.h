@@ -32,6 +32,7 @@ class TemporaryDirectory
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
     std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+    std::string path() const { return path_.string(); }
     std::vector<std::string> entries() const; // names, sorted
 
   private:

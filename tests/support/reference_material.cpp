@@ -38,8 +38,11 @@ enum class Encoding { Linear, Srgb };
 dvec4 texel(const scene::Image& image, const scene::TextureUse& use, int64_t x, int64_t y, Encoding encoding)
 {
     const int64_t column = wrapped(x, image.width, use.wrapU), row = wrapped(y, image.height, use.wrapV);
-    const uint8_t* bytes = &image.rgba[4 * static_cast<size_t>(row * image.width + column)];
-    dvec4 value = dvec4(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0;
+    const size_t start = 4 * static_cast<size_t>(row * image.width + column);
+    const auto channel = [&](size_t c) {
+        return image.deep.empty() ? image.rgba[start + c] / 255.0 : image.deep[start + c] / 65535.0;
+    };
+    dvec4 value(channel(0), channel(1), channel(2), channel(3));
     if (encoding == Encoding::Srgb)
         for (int c = 0; c < 3; ++c) value[c] = decodeSrgb(value[c]);
     return value;

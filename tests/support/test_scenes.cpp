@@ -97,6 +97,17 @@ uint32_t addNoise(Scene& scene, uint32_t width, uint32_t height, int low, uint32
     return static_cast<uint32_t>(scene.images.size() - 1);
 }
 
+// The same with samples of 16 bits.
+uint32_t addDeepNoise(Scene& scene, uint32_t width, uint32_t height, int low, uint32_t seed)
+{
+    const uint32_t index = addNoise(scene, width, height, low, seed);
+    std::mt19937 random(seed + 100);
+    scene::Image& image = scene.images[index];
+    for (const uint8_t high : image.rgba) image.deep.push_back(uint16_t(high << 8 | int(random() % 256)));
+    image.rgba.clear();
+    return index;
+}
+
 uint32_t addBumps(Scene& scene)
 {
     const uint32_t index = addNoise(scene, 5, 4, 0, 3);
@@ -176,17 +187,28 @@ Scene frostedGlass()
     return ballOf({.baseColor = COPPER, .metallic = 0, .roughness = 0.6f, .transmission = 0.9f, .thin = false});
 }
 
+Scene texturesOf(Scene scene, uint32_t wallImage, uint32_t floorImage)
+{
+    Material& wall = scene.materials.back();
+    wall.baseColorTexture = {.image = wallImage, .wrapU = Wrap::Mirror, .wrapV = Wrap::Clamp};
+    wall.baseColorTexture.row0 = {1.2f, 0.4f, -0.1f};
+    wall.baseColorTexture.row1 = {-0.3f, 1.4f, 0.2f};
+    scene.materials[0].baseColorTexture = {.image = floorImage, .uvSet = 1, .nearest = true};
+    addAttributes(scene);
+    return scene;
+}
 Scene textures()
 {
     Scene scene = wallOf({.metallic = 0, .specular = 0});
     const uint32_t image = addNoise(scene, 7, 5, 20, 1);
-    Material& wall = scene.materials.back();
-    wall.baseColorTexture = {.image = image, .wrapU = Wrap::Mirror, .wrapV = Wrap::Clamp};
-    wall.baseColorTexture.row0 = {1.2f, 0.4f, -0.1f};
-    wall.baseColorTexture.row1 = {-0.3f, 1.4f, 0.2f};
-    scene.materials[0].baseColorTexture = {.image = image, .uvSet = 1, .nearest = true};
-    addAttributes(scene);
-    return scene;
+    return texturesOf(std::move(scene), image, image);
+}
+Scene deepTextures() // beside one of 8 bits
+{
+    Scene scene = wallOf({.metallic = 0, .specular = 0});
+    const uint32_t floor = addNoise(scene, 3, 3, 20, 1);
+    const uint32_t wall = addDeepNoise(scene, 7, 5, 20, 2);
+    return texturesOf(std::move(scene), wall, floor);
 }
 Scene metallicRoughnessMap()
 {
@@ -456,6 +478,7 @@ std::vector<TestScene> testScenes()
         {"ClearGlassBall", clearGlassBall, 5},
         {"FrostedGlass", frostedGlass, 5},
         {"Textures", textures, 2},
+        {"DeepTextures", deepTextures, 2},
         {"MetallicRoughnessMap", metallicRoughnessMap, 2},
         {"NormalMap", normalMap, 2},
         {"SpecularMaps", specularMaps, 2},

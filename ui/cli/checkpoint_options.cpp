@@ -3,7 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/fingerprint.h"
-#include "ui/cli/output_file.h"
+#include "ui/cli/number_range.h"
 
 #include <cstdio>
 
@@ -46,15 +46,15 @@ passes::Identity identityOf(const passes::Renderer& renderer, const RunReport& r
 
 void CheckpointOptions::addTo(CLI::App& app)
 {
-    app.add_option(
-           "--checkpoint", checkpoint_,
-           "Keeps the unfinished render here: every now and then, on Ctrl-C and at the end, whole or not at all.")
+    app.add_option("--checkpoint", checkpoint_,
+                   "Keeps the unfinished render here: every now and then, on Ctrl-C or SIGTERM and at the end, whole "
+                   "or not at all.")
         ->option_text("FILE")
         ->group("Long renders");
     app.add_option("--checkpoint-interval", interval_,
                    "Time between two checkpoints: the most that is lost when the program is killed.")
         ->option_text("0 to 86400 s (300)")
-        ->check(CLI::Range(0.0, 86400.0))
+        ->check(within(0.0, 86400.0))
         ->group("Long renders");
     app.add_option(
            "--resume", resume_,
@@ -67,6 +67,13 @@ void CheckpointOptions::addTo(CLI::App& app)
 void CheckpointOptions::requireWritable() const
 {
     if (!checkpoint_.empty()) ui::requireWritable(checkpoint_);
+}
+
+// A render may go on in the file that it goes on from.
+void CheckpointOptions::name(NamedFiles& files) const
+{
+    files.writes("--checkpoint", checkpoint_);
+    if (checkpoint_.empty() || !files::areSame(resume_, checkpoint_)) files.reads("--resume", resume_);
 }
 
 double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& report)

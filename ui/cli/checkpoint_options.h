@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "passes/checkpoint.h"
+#include "ui/cli/output_file.h"
 #include "ui/cli/run_report.h"
 
 namespace ui
@@ -17,6 +18,7 @@ class CheckpointOptions
   public:
     void addTo(CLI::App& app);    // must live until the options are read
     void requireWritable() const; // throws Error
+    void name(NamedFiles& files) const;
     bool resumes() const { return !resume_.empty(); }
 
     // Before the first frame: goes on from --resume's file, if given, and returns the seconds rendered before. Throws

@@ -1,6 +1,7 @@
 #include "ui/cli/device_options.h"
 
 #include "engine/base/error.h"
+#include "ui/cli/number_range.h"
 
 #include <fmt/ranges.h>
 
@@ -60,7 +61,7 @@ void DeviceOptions::addTo(CLI::App& app)
            "Give up, naming the stage, when the device finishes nothing for so long. Long dispatches are cut into "
            "pieces of about half a second.")
         ->option_text(fmt::format("1 to 86400 s ({})", stall_))
-        ->check(CLI::Range(1.0, 86400.0));
+        ->check(within(1.0, 86400.0));
 }
 
 gpu::Device DeviceOptions::open(bool robust) const

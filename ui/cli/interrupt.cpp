@@ -9,30 +9,34 @@ namespace ui
 namespace
 {
 
-volatile std::sig_atomic_t requestCount = 0;
+constexpr int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
 
-extern "C" void onInterrupt(int)
+volatile std::sig_atomic_t received = 0;
+
+extern "C" void onSignal(int signal)
 {
-    if (requestCount > 0) _exit(EXIT_INTERRUPTED);
-    requestCount = 1;
+    if (received != 0) _exit(128 + signal);
+    received = signal;
 }
 
 } // namespace
 
 Interrupt::Interrupt()
 {
-    requestCount = 0;
-    std::signal(SIGINT, onInterrupt);
+    received = 0;
+    for (const int signal : SIGNALS)
+        if (std::signal(signal, onSignal) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN); // nohup
 }
 
 Interrupt::~Interrupt()
 {
-    std::signal(SIGINT, SIG_DFL);
+    for (const int signal : SIGNALS)
+        if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-bool Interrupt::requested() const
+int Interrupt::exitCode()
 {
-    return requestCount > 0;
+    return received == 0 ? 0 : 128 + received;
 }
 
 } // namespace ui

@@ -1,5 +1,6 @@
 #include "ui/cli/method_list.h"
 
+#include "engine/base/files.h"
 #include "ui/cli/presets.h"
 #include "ui/cli/usage_error.h"
 
@@ -27,7 +28,7 @@ void applyWord(passes::Settings& settings, const std::string& word, bool first)
 {
     const size_t equals = word.find('=');
     const std::vector<std::string> presets = presetNames();
-    if (first && (word.ends_with(".json") || std::ranges::find(presets, word) != presets.end()))
+    if (first && (files::extensionOf(word) == ".json" || std::ranges::find(presets, word) != presets.end()))
         applyPreset(settings, word);
     else if (first)
         passes::set(settings, "method", word);

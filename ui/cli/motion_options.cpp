@@ -1,6 +1,7 @@
 #include "ui/cli/motion_options.h"
 
 #include "passes/camera_choice.h"
+#include "ui/cli/number_range.h"
 #include "ui/cli/usage_error.h"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ void MotionOptions::addTo(CLI::App& app)
            "Turns the camera about the vertical through the point it looks at, counter-clockwise seen from above. "
            "Writes the last frame: --average is off.")
         ->option_text("DEGREES per frame, -180 to 180 (0)")
-        ->check(CLI::Range(-180.0, 180.0))
+        ->check(within(-180.0, 180.0))
         ->excludes(path)
         ->group("Camera motion");
 }

@@ -9,6 +9,7 @@
 
 #include "passes/camera_path.h"
 #include "passes/settings.h"
+#include "ui/cli/output_file.h"
 #include "ui/cli/settings_options.h"
 
 namespace ui
@@ -27,6 +28,8 @@ class MotionOptions
 
     // Of the camera that the settings choose. Empty when nothing moves. Throws Error: the file.
     passes::CameraAt read(const scene::Scene& scene, const passes::Settings& settings) const;
+
+    void name(NamedFiles& files) const { files.reads("--camera-path", path_); }
 
     // As metadata, like settings.
     std::vector<std::pair<std::string, std::string>> toText() const;

@@ -11,21 +11,53 @@
 namespace ui
 {
 
+namespace
+{
+
+void requireApart(const NamedFile& output, const NamedFile& input)
+{
+    if (files::areSame(output.file, input.file))
+        throw UsageError("{} would write over \"{}\", which {} reads: name another file.", output.option,
+                         input.file.string(), input.option);
+}
+
+} // namespace
+
 void requireWritable(const std::filesystem::path& file, std::initializer_list<const char*> extensions)
 {
     std::string names;
     for (const char* extension : extensions) names += (names.empty() ? "" : ", ") + std::string(extension);
-    if (extensions.size() > 0 && std::ranges::find(extensions, file.extension().string()) == extensions.end())
+    if (extensions.size() > 0 && std::ranges::find(extensions, files::extensionOf(file)) == extensions.end())
         throw UsageError("Cannot write \"{}\": its extension must be one of: {}.", file.string(), names);
 
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw Error("Cannot write \"{}\": it is a directory.", file.string());
-    const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
-    if (!std::filesystem::is_directory(directory, ignored))
+    const std::filesystem::path directory = files::resolved(file).parent_path();
+    const bool device = files::isDevice(file); // written to as it is; a file is made in its directory
+    if (!device && !std::filesystem::is_directory(directory, ignored))
         throw Error("Cannot write \"{}\": there is no directory \"{}\".", file.string(), directory.string());
-    if (access(directory.c_str(), W_OK) != 0)
+    if (access(device ? file.c_str() : directory.c_str(), W_OK) != 0)
         throw Error("Cannot write \"{}\": {}.", file.string(), std::strerror(errno));
+}
+
+void NamedFiles::reads(const std::string& option, const std::filesystem::path& file)
+{
+    std::error_code ignored;
+    if (file.empty() || !std::filesystem::exists(file, ignored)) return;
+    inputs_.push_back({option, file});
+    for (const NamedFile& output : outputs_) requireApart(output, inputs_.back());
+}
+
+void NamedFiles::writes(const std::string& option, const std::filesystem::path& file)
+{
+    if (file.empty()) return;
+    for (const NamedFile& output : outputs_)
+        if (files::areSame(output.file, file))
+            throw UsageError("{} and {} would both write the file \"{}\": name two.", output.option, option,
+                             file.string());
+    outputs_.push_back({option, file});
+    for (const NamedFile& input : inputs_) requireApart(outputs_.back(), input);
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text)

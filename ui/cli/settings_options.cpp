@@ -72,6 +72,13 @@ passes::Settings SettingsOptions::read() const
     return settings;
 }
 
+void SettingsOptions::name(NamedFiles& files, const passes::Settings& settings) const
+{
+    if (const std::vector<std::string> names = presetNames(); std::ranges::find(names, preset_) == names.end())
+        files.reads("--preset", preset_);
+    files.reads("--environment", settings.environment);
+}
+
 bool SettingsOptions::given(const std::string& name) const
 {
     return given_.contains(name) || std::ranges::any_of(assignments_, [&](const std::string& assignment) {

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "passes/settings.h"
+#include "ui/cli/output_file.h"
 
 namespace ui
 {
@@ -23,6 +24,9 @@ class SettingsOptions
 
     // The defaults, then the preset, then --set in order, then the settings' own options. Throws Error: the preset.
     passes::Settings read() const;
+
+    // The preset, if it is a file, and the environment of the settings that read() gave.
+    void name(NamedFiles& files, const passes::Settings& settings) const;
 
     // Whether the command line itself, not a preset, says something about the setting.
     bool given(const std::string& name) const;

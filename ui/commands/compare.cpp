@@ -2,7 +2,10 @@
 
 #include "engine/base/error.h"
 #include "engine/base/json.h"
+#include "engine/image/plane.h"
+#include "ui/cli/number_range.h"
 #include "ui/cli/output_file.h"
+#include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 #include "ui/report/comparison_page.h"
 #include "ui/report/page.h"
@@ -76,7 +79,30 @@ Json CompareCommand::toJson(const ComparedPicture& picture) const
             {"chroma_mse", m.chromaMse},
             {"mean_ratio", {m.meanRatio.r, m.meanRatio.g, m.meanRatio.b}},
             {"reference", reference},
+            {"warnings", picture.loaded.warnings},
             {"gates", gates}};
+}
+
+// With a warning about values below 0, which are rarely meant.
+ComparedPicture load(const std::string& file)
+{
+    ComparedPicture picture{file, image::read(file), {}};
+    if (const size_t count = image::countBelowZero(picture.loaded.image))
+        picture.loaded.warnings.push_back(fmt::format("Picture \"{}\" has {} values below 0: PSNR and SSIM are of "
+                                                      "c/(1+|c|), FLIP compares what is below 0 as light "
+                                                      "of its own.",
+                                                      file, count));
+    for (const std::string& warning : picture.loaded.warnings) std::fprintf(stderr, "Warning: %s\n", warning.c_str());
+    return picture;
+}
+
+void requireEqualSizes(const ComparedPicture& reference, const ComparedPicture& picture)
+{
+    const image::Image &r = reference.loaded.image, &x = picture.loaded.image;
+    if (r.width != x.width || r.height != x.height)
+        throw UsageError(
+            "The reference \"{}\" has {}x{} pixels and the picture \"{}\" {}x{}, so they cannot be compared.",
+            reference.file, r.width, r.height, picture.file, x.width, x.height);
 }
 
 void printTable(const std::vector<ComparedPicture>& pictures)
@@ -95,15 +121,21 @@ void printTable(const std::vector<ComparedPicture>& pictures)
 
 int CompareCommand::run() const
 {
+    NamedFiles named;
+    named.writes("--html", html);
+    named.writes("--json", json);
+    named.reads("REFERENCE", reference);
+    for (const std::string& file : images) named.reads("IMAGE", file);
     if (!html.empty()) requireWritable(html, {".html"});
     if (!json.empty()) requireWritable(json);
 
-    const ComparedPicture first{reference, image::read(reference), {}};
+    const ComparedPicture first = load(reference);
     std::vector<ComparedPicture> pictures;
     Json facts = Json::array();
     std::vector<std::string> failures;
     for (const std::string& file : images) {
-        ComparedPicture picture{file, image::read(file), {}};
+        ComparedPicture picture = load(file);
+        requireEqualSizes(first, picture);
         picture.metrics = whileDoing(fmt::format("comparing \"{}\" with the reference \"{}\"", file, reference),
                                      [&] { return image::measure(first.loaded.image, picture.loaded.image); });
         facts.push_back(toJson(picture));
@@ -134,16 +166,18 @@ Action setUpCompare(CLI::App& app)
     app.add_option("--json", command->json,
                    "Writes the figures for programs: a list, one object a picture; null where a figure is infinite.")
         ->option_text("FILE.json");
-    app.add_option("--max-flip", command->maxFlip,
-                   "The exit code is 1 when a picture's mean FLIP is above this. Of what a screen shows, 0 to 1: 0.01 "
-                   "is hardly visible noise. Default: no limit.")
+    app.add_option(
+           "--max-flip", command->maxFlip,
+           "The exit code is 1 when a picture's mean FLIP is above this. Of what a screen shows, 0 to 1: 0.01 "
+           "is hardly visible noise. What is below 0 no screen shows: it is compared as light of its own, and the "
+           "larger error counts. Default: no limit.")
         ->option_text("X")
-        ->check(CLI::Range(0.0, 1.0).description(""));
+        ->check(within(0.0, 1.0));
     app.add_option("--min-psnr", command->minPsnr,
-                   "The exit code is 1 when a picture's PSNR is below this, in dB, peak 1, of c/(c+1). Default: no "
-                   "limit.")
+                   "The exit code is 1 when a picture's PSNR is below this, in dB, peak 1, of c/(c+1), below 0 "
+                   "of c/(1-c). Default: no limit.")
         ->option_text("X")
-        ->check(CLI::Range(0.0, 1000.0).description(""));
+        ->check(within(0.0, 1000.0));
     return [command] { return command->run(); };
 }
 

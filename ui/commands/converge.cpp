@@ -7,6 +7,7 @@
 #include "ui/cli/interrupt.h"
 #include "ui/cli/method_list.h"
 #include "ui/cli/motion_options.h"
+#include "ui/cli/number_range.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/progress.h"
 #include "ui/cli/run_report.h"
@@ -29,11 +30,12 @@ namespace
 {
 
 constexpr double DEFAULT_SECONDS = 10;
-constexpr double MAX_REFERENCE_FRAMES = 1 << 30;
+constexpr uint64_t MIN_REFERENCE_FRAMES = 16, MAX_REFERENCE_FRAMES = 1 << 30;
 constexpr auto REPORT_INTERVAL = std::chrono::minutes(2); // a kill leaves a report at most so old
 
 struct ConvergeCommand {
-    std::string scene, directory, reference = "auto";
+    SceneSource scene;
+    std::string directory, reference = "auto";
     MethodsOption methods;
     size_t runs = 8;
     passes::Precision precision;
@@ -93,8 +95,8 @@ passes::Race::Limits ConvergeCommand::limitsOf(const passes::Settings& wanted) c
 // Of everything that decides the figures, but for the number of repeats.
 std::string ConvergeCommand::keyOf(const ConvergeReport& report, const passes::Race::Limits& limits) const
 {
-    std::vector<std::string> facts = {scene,
-                                      stampOf(scene),
+    std::vector<std::string> facts = {scene.name,
+                                      stampOf(scene.name),
                                       reference,
                                       stampOf(reference),
                                       report.provenance.device,
@@ -122,7 +124,7 @@ void ConvergeCommand::write(ConvergeReport& report, const RaceStore& store, cons
     writeText(folder / "converge.csv", convergeCsv(report));
     for (const auto& [frames, made] : report.references)
         image::write(folder / (report.moving ? fmt::format("reference-{}.exr", frames) : "reference.exr"), made.picture,
-                     {{"scene", scene}, {"frames-done", std::to_string(made.pathTraced)}});
+                     {{"scene", scene.name}, {"frames-done", std::to_string(made.pathTraced)}});
     writeText(folder / "index.html", convergePage(report, plots));
 }
 
@@ -130,7 +132,7 @@ int ConvergeCommand::run() const
 {
     passes::Settings wanted = settings.read();
     motion.adjust(wanted, settings);
-    ConvergeReport report{.scene = scene, .methods = methods.read(wanted), .moving = motion.moving()};
+    ConvergeReport report{.scene = scene.name, .methods = methods.read(wanted), .moving = motion.moving()};
     report.pt = ensurePathTracer(report.methods, wanted);
     report.precision = precision.error;
     const passes::Race::Limits limits = limitsOf(wanted);
@@ -138,6 +140,13 @@ int ConvergeCommand::run() const
         if (report.moving) throw UsageError("--reference FILE cannot be combined with a moving camera: use auto.");
         report.referenceFile = reference;
     }
+    NamedFiles files;
+    for (const char* file : {"index.html", "converge.csv", "reference.exr"})
+        files.writes("--output", std::filesystem::path(directory) / file);
+    if (reference != "auto") files.reads("--reference", reference);
+    motion.name(files);
+    settings.name(files, wanted);
+    files.reads("SCENE", scene.name);
     std::error_code failure;
     std::filesystem::create_directories(directory, failure);
     if (failure || !std::filesystem::is_directory(directory))
@@ -149,7 +158,7 @@ int ConvergeCommand::run() const
     const scene::Scene world = openScene(scene, wanted, progress);
     const passes::CameraAt cameraAt = motion.read(world, wanted);
     report.provenance = {.command = commandLine(),
-                         .scene = scene,
+                         .scene = scene.name,
                          .device = gpu.adapter().name,
                          .driver = gpu.adapter().driver,
                          .settings = passes::toText(wanted)};
@@ -175,6 +184,7 @@ int ConvergeCommand::run() const
                                   .progress = [&](double done) { progress.show("Path tracing a reference", done, 1); },
                                   .stop = stop})
             : passes::References(reference, wanted);
+    for (const std::string& warning : references.warnings()) fmt::print(stderr, "Warning: {}\n", warning);
 
     auto written = std::chrono::steady_clock::now();
     if (!report.moving || !report.repeats.empty()) references.after(limits.frames);
@@ -204,7 +214,7 @@ int ConvergeCommand::run() const
     fmt::print(stderr,
                "Interrupted: the report in \"{}\" is partial, marked so, with {} of {} repeats; --resume goes on.\n",
                directory, complete, runs);
-    return EXIT_INTERRUPTED;
+    return Interrupt::exitCode();
 }
 
 } // namespace
@@ -212,8 +222,7 @@ int ConvergeCommand::run() const
 Action setUpConverge(CLI::App& app)
 {
     const auto command = std::make_shared<ConvergeCommand>();
-    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
-        ->required();
+    addSceneOptions(app, command->scene, SCENE_DOC)->required();
     app.add_option(
            "-o,--output", command->directory,
            "Where the report goes, made when missing: index.html (one self-contained page), converge.csv, plots "
@@ -227,7 +236,7 @@ Action setUpConverge(CLI::App& app)
            "runs for --seconds (10 s of each method unless --frames says otherwise), or with a moving camera for "
            "--frames. Means and single frames are both measured, whatever --average says.")
         ->option_text("whole number, 1 to 9999 (8)")
-        ->check(CLI::Range(1, 9999));
+        ->check(within(1, 9999));
     app.add_option(
            "--reference", command->reference,
            "What errors are measured against. auto: path traced with other random numbers, its own error estimated "
@@ -237,11 +246,11 @@ Action setUpConverge(CLI::App& app)
     app.add_option("--reference-error", command->precision.error,
                    "How precise an automatic reference has to be: the root of its own relative MSE.")
         ->option_text("0.0001 to 1 (0.02)")
-        ->check(CLI::Range(1e-4, 1.0));
+        ->check(within(1e-4, 1.0));
     app.add_option("--reference-frames", command->precision.maxFrames,
                    "And the most frames it may take; the page says so.")
         ->option_text("frames, 16 to 1073741824 (16384)")
-        ->check(CLI::Range(16.0, MAX_REFERENCE_FRAMES));
+        ->check(within(MIN_REFERENCE_FRAMES, MAX_REFERENCE_FRAMES));
     app.add_flag(
         "--resume", command->resume,
         "Goes on where a killed or interrupted run of the same settings stopped: finished repeats in DIR count.");

@@ -5,6 +5,7 @@
 #include "ui/cli/interrupt.h"
 #include "ui/cli/method_list.h"
 #include "ui/cli/motion_options.h"
+#include "ui/cli/number_range.h"
 #include "ui/cli/progress.h"
 #include "ui/cli/ranks.h"
 #include "ui/cli/run_report.h"
@@ -49,7 +50,8 @@ passes::Settings protocol()
 }
 
 struct CorrelateCommand {
-    std::string scene, output;
+    SceneSource scene;
+    std::string output;
     uint32_t runs = 32, batch = 16;
     bool resume = false, quiet = false;
     DeviceOptions device;
@@ -212,13 +214,19 @@ int CorrelateCommand::run() const
 {
     const passes::Settings base = readSettings();
     const std::vector<NamedMethod> list = readMethods(base);
+    NamedFiles files;
+    for (const char* file : {"index.html", "correlate.csv", "settings.json"})
+        files.writes("--output", std::filesystem::path(output) / file);
+    motion.name(files);
+    settings.name(files, base);
+    files.reads("SCENE", scene.name);
     const Ranks& processes = ranks();
     Progress progress(quiet || processes.index() > 0);
     gpu::Device gpu = device.open();
     const std::vector<uint32_t> sizes = shareOut(gpu, list);
 
     std::vector<std::pair<std::string, std::string>> facts = {
-        {"scene", scene}, {"device", gpu.adapter().name}, {"version", version()}};
+        {"scene", scene.name}, {"device", gpu.adapter().name}, {"version", version()}};
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
     for (const auto& fact : motion.toText()) facts.push_back(fact);
@@ -277,7 +285,7 @@ int CorrelateCommand::run() const
 
     std::vector<Bytes> records;
     for (const CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
-    Correlation correlation{.scene = scene,
+    Correlation correlation{.scene = scene.name,
                             .moving = bool(cameraAt),
                             .partial = interrupt.requested(),
                             .width = base.width,
@@ -285,13 +293,13 @@ int CorrelateCommand::run() const
                             .runs = runs};
     batches.clear();
     for (const Bytes& record : processes.gather(records)) batches.push_back(fromBytes(record));
-    if (processes.index() > 0) return correlation.partial ? EXIT_INTERRUPTED : 0;
+    if (processes.index() > 0) return correlation.partial ? Interrupt::exitCode() : 0;
     evaluate(correlation, list, std::move(batches));
     std::string command = commandLine();
     if (processes.count() > 1) command = fmt::format("mpirun -n {} {}", processes.count(), command);
     writeCorrelation(output, correlation,
                      {.command = command,
-                      .scene = scene,
+                      .scene = scene.name,
                       .device = gpu.adapter().name,
                       .driver = gpu.adapter().driver,
                       .settings = facts,
@@ -304,7 +312,7 @@ int CorrelateCommand::run() const
     if (!correlation.partial) return 0;
     std::fprintf(stderr, "Interrupted: %s is partial, marked so; --resume goes on with its finished batches.\n",
                  output.c_str());
-    return EXIT_INTERRUPTED;
+    return Interrupt::exitCode();
 }
 
 } // namespace
@@ -312,8 +320,7 @@ int CorrelateCommand::run() const
 Action setUpCorrelate(CLI::App& app)
 {
     const auto command = std::make_shared<CorrelateCommand>();
-    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
-        ->required();
+    addSceneOptions(app, command->scene, SCENE_DOC)->required();
     app.add_option(
            "-o,--output", command->output,
            "Directory for correlate.csv, autocovariance.svg, maps, and index.html, which holds them all. Made if "
@@ -326,13 +333,13 @@ Action setUpCorrelate(CLI::App& app)
            "Independent runs, over which covariances are taken. With temporal reuse alone pixels are independent "
            "chains too: pixels times runs is what decides the intervals. Cost grows with it.")
         ->option_text("6 to 1000000 runs (32)")
-        ->check(CLI::Range(2 * MIN_BATCH, 1000000u));
+        ->check(within(2 * MIN_BATCH, 1000000u));
     app.add_option(
            "--batch", command->batch,
            "Runs rendered side by side. A finished batch is stored in DIR; processes share batches. Larger ones "
            "use a large GPU better; covariances are about the means of a batch.")
         ->option_text("3 to 1000 runs (16)")
-        ->check(CLI::Range(MIN_BATCH, 1000u));
+        ->check(within(MIN_BATCH, 1000u));
     app.add_flag("--resume", command->resume,
                  "Goes on with the batches that DIR holds, of the same settings; with more --runs, too.");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");

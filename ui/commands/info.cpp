@@ -37,7 +37,8 @@ std::string megabytes(uint64_t bytes)
 }
 
 struct InfoCommand {
-    std::string scene, json;
+    SceneSource scene;
+    std::string json;
     bool scenes = false, quiet = false;
     DeviceOptions device;
     SettingsOptions settings;
@@ -173,17 +174,21 @@ void printScene(const Json& scene, const passes::Settings& settings)
 
 int InfoCommand::run() const
 {
+    const passes::Settings chosen = settings.read();
+    NamedFiles files;
+    files.writes("--json", json);
+    settings.name(files, chosen);
+    files.reads("SCENE", scene.name);
     if (!json.empty()) requireWritable(json);
     Json facts = {{"version", version()}};
     if (scenes) {
         facts["scenes"] = scenesJson();
         for (const scene::BuiltInScene& builtIn : scene::builtInScenes())
             print(fmt::format("{:<10}{}", builtIn.name, builtIn.description));
-    } else if (scene.empty()) {
+    } else if (scene.name.empty()) {
         facts["devices"] = devicesJson(device.tuning());
         printDevices(facts["devices"]);
     } else {
-        const passes::Settings chosen = settings.read();
         Progress progress(quiet);
         gpu::Device gpu = device.open();
         const scene::Scene world = openScene(scene, chosen, progress);
@@ -192,7 +197,7 @@ int InfoCommand::run() const
         progress.clear();
         facts["device"] = gpu.adapter().name;
         facts["tuning"] = tuningJson(gpu.adapter().tuning);
-        facts["scene"] = sceneJson(scene, world, renderer.stats());
+        facts["scene"] = sceneJson(scene.name, world, renderer.stats());
         printScene(facts["scene"], chosen);
         print("Device: " + gpu.adapter().name + ", tuned " + gpu::toText(gpu.adapter().tuning));
     }
@@ -205,7 +210,7 @@ int InfoCommand::run() const
 Action setUpInfo(CLI::App& app)
 {
     const auto command = std::make_shared<InfoCommand>();
-    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene; none: the Vulkan devices.");
+    addSceneOptions(app, command->scene, "A .gltf or .glb file, or a built-in scene; none: the Vulkan devices.");
     app.add_flag("--scenes", command->scenes, "Lists the built-in scenes.");
     app.add_option("--json", command->json, "Writes the same facts for programs.")->option_text("FILE.json");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");

@@ -29,7 +29,8 @@ double secondsSince(std::chrono::steady_clock::time_point start)
 }
 
 struct RenderCommand {
-    std::string scene, output, stats;
+    SceneSource scene;
+    std::string output, stats;
     bool quiet = false;
     DeviceOptions device;
     MotionOptions motion;
@@ -39,7 +40,7 @@ struct RenderCommand {
     int run();
 };
 
-// Until the settings say stop, or Ctrl-C does.
+// Until the settings say stop, or Ctrl-C or SIGTERM does.
 void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, CheckpointOptions& checkpoint,
                   Progress& progress, RunReport& report, std::chrono::steady_clock::time_point commandStart)
 {
@@ -75,8 +76,15 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
 int RenderCommand::run()
 {
     const auto commandStart = std::chrono::steady_clock::now();
-    RunReport report{.scene = scene, .settings = settings.read(), .extra = motion.toText()};
+    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = motion.toText()};
     motion.adjust(report.settings, settings);
+    NamedFiles files;
+    files.writes("--output", output);
+    files.writes("--stats", stats);
+    checkpoint.name(files);
+    motion.name(files);
+    settings.name(files, report.settings);
+    files.reads("SCENE", scene.name);
     requireWritable(output, {".exr", ".png"});
     if (!stats.empty()) requireWritable(stats);
     checkpoint.requireWritable();
@@ -85,6 +93,7 @@ int RenderCommand::run()
     const auto loadStart = std::chrono::steady_clock::now();
     gpu::Device gpu = device.open(checkpoint.resumes());
     const scene::Scene world = openScene(scene, report.settings, progress);
+    for (const std::filesystem::path& file : world.files) files.reads("SCENE", file);
     const passes::CameraAt cameraAt = motion.read(world, report.settings);
     report.adapter = gpu.adapter();
     report.loadSeconds = secondsSince(loadStart);
@@ -106,7 +115,7 @@ int RenderCommand::run()
     if (!report.partial) return kept ? 0 : 1;
     std::fprintf(stderr, "Interrupted: %s is partial, marked so, with %llu frames.\n", output.c_str(),
                  static_cast<unsigned long long>(report.frames));
-    return EXIT_INTERRUPTED;
+    return Interrupt::exitCode();
 }
 
 } // namespace
@@ -114,8 +123,7 @@ int RenderCommand::run()
 Action setUpRender(CLI::App& app)
 {
     const auto command = std::make_shared<RenderCommand>();
-    app.add_option("SCENE", command->scene, "A .gltf or .glb file, or a built-in scene (info --scenes lists them).")
-        ->required();
+    addSceneOptions(app, command->scene, SCENE_DOC)->required();
     app.add_option("-o,--output", command->output,
                    "The picture. EXR: float32 linear RGB. PNG: c/(c+1), then sRGB. Both with all settings inside.")
         ->option_text("FILE.exr|FILE.png")

@@ -1,6 +1,7 @@
 // view [SCENE]: the window.
 
 #include "ui/cli/output_file.h"
+#include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
 #include "ui/commands/commands.h"
 #include "ui/window/window.h"
@@ -15,11 +16,19 @@ namespace
 
 struct ViewCommand {
     WindowOptions window;
+    SceneSource scene{.name = "hall"};
     SettingsOptions settings;
 
     int run()
     {
         window.order.settings = settings.read();
+        window.order.scene = scene.name;
+        window.order.assetRoot = scene.assetRoot;
+        NamedFiles files;
+        files.writes("--report", window.report);
+        files.reads("--reference", window.reference);
+        settings.name(files, window.order.settings);
+        files.reads("SCENE", scene.name);
         if (!window.report.empty()) requireWritable(window.report);
         showWindow(window);
         return 0;
@@ -31,9 +40,7 @@ struct ViewCommand {
 Action setUpView(CLI::App& app)
 {
     const auto command = std::make_shared<ViewCommand>();
-    command->window.order.scene = "hall";
-    app.add_option("SCENE", command->window.order.scene,
-                   "A .gltf or .glb file, or a built-in scene; without one: hall.");
+    addSceneOptions(app, command->scene, "A .gltf or .glb file, or a built-in scene; without one: hall.");
     app.add_option("--reference", command->window.reference,
                    "Picture to measure errors against over time: EXR, or a PNG that this program wrote.")
         ->option_text("FILE");

@@ -34,7 +34,10 @@ constexpr const char* STYLE = R"(<style>
 constexpr const char* MEANINGS =
     "MSE, relative MSE (x - r)² / (r² + 0.01) and MAPE |x - r| / (|r| + 0.01) are of linear RGB. PSNR (peak 1), SSIM "
     "(11x11 Gaussian window) and FLIP (LDR-FLIP, 67 pixels per degree; 0 cannot be seen, 1 is green for blue) are of "
-    "c/(c+1), what a screen shows. Luma and chroma are the squared errors of Y and of Co and Cg. Mean ratio is the sum "
+    "c/(c+1), what a screen shows; below 0, where the viewer shows black, PSNR and SSIM are of c/(1-c), and FLIP "
+    "compares "
+    "what is below 0 as light of its own. Luma and chroma are the squared errors of Y and of Co and Cg. Mean ratio is "
+    "the sum "
     "of a channel over the reference's. HDR-FLIP is not computed.";
 
 std::string figure(const std::vector<std::byte>& png, const std::string& captionHtml, int shownWidth = 0)
@@ -180,6 +183,9 @@ std::string comparisonPage(const ComparedPicture& reference, const std::vector<C
         shown.push_back({picture.file, image::tonemappedPng(picture.loaded.image, {})});
     }
     page.table(figureNames(), rows);
+    for (const std::string& warning : reference.loaded.warnings) page.paragraph(warning);
+    for (const ComparedPicture& picture : pictures)
+        for (const std::string& warning : picture.loaded.warnings) page.paragraph(warning);
     page.raw(viewerHtml(shown));
     for (const ComparedPicture& picture : pictures) {
         page.heading(picture.file);

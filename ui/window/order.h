@@ -38,6 +38,7 @@ struct StudyOrder {
 // What the window wants to see.
 struct Order {
     std::string scene;                     // empty: nothing yet
+    std::string assetRoot;                 // of scenes, as --asset-root
     passes::Settings settings;             // of A
     std::optional<passes::Settings> rival; // of B; what says which picture (size, camera, environment) is A's
     std::optional<Pose> pose;              // empty: the camera that the settings name

@@ -199,7 +199,7 @@ void RenderThread::load(const Order& order)
 {
     say("Loading the scene");
     auto world = std::make_unique<scene::Scene>(
-        openScene(order.scene, order.settings, [&](const std::string& what, double fraction) {
+        openScene({order.scene, order.assetRoot}, order.settings, [&](const std::string& what, double fraction) {
             say(fmt::format("{}: {:.0f}%", what, 100 * fraction));
         }));
     say("Building the BVH");

@@ -60,6 +60,7 @@ std::string takeScreenshot(const Shot& shot)
 
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
                                    quoted(shot.order.scene), name, name, quoted(shot.adapter.name));
+    if (!shot.order.assetRoot.empty()) line += " --asset-root " + quoted(shot.order.assetRoot);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

@@ -98,7 +98,8 @@ void edit(Places& places, const passes::Knob& knob, float& value)
 }
 void edit(Places&, const passes::Knob& knob, double& value)
 {
-    ImGui::InputDouble(knob.name, &value);
+    double typed = value;
+    if (ImGui::InputDouble(knob.name, &typed) && typed >= knob.low && typed <= knob.high) value = typed;
     explain(knob.doc);
 }
 void edit(Places& places, const passes::Knob& knob, uint64_t& value)

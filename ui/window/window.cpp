@@ -1,6 +1,7 @@
 #include "ui/window/window.h"
 
 #include "engine/base/error.h"
+#include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/presets.h"
@@ -45,13 +46,6 @@ extern "C" void onStop(int)
 }
 
 using SettingsPair = std::pair<passes::Settings, std::optional<passes::Settings>>;
-
-std::string extensionOf(const std::string& file)
-{
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
 
 class Window
 {
@@ -114,7 +108,7 @@ class Window
     // A file that was dropped into the window, or chosen.
     void open(const std::string& file)
     {
-        const std::string kind = extensionOf(file);
+        const std::string kind = files::extensionOf(file);
         if (kind == ".json") {
             usePreset(file);
         } else if (kind == ".exr" || kind == ".png" || kind == ".hdr" || kind == ".jpg" || kind == ".jpeg") {
@@ -140,10 +134,11 @@ class Window
     void loadReference(const std::string& file)
     {
         loading_ = std::async(std::launch::async, [file] {
+            image::Loaded loaded = image::read(file);
             auto reference = std::make_shared<const Reference>(
-                Reference{image::read(file).image, std::filesystem::path(file).filename().string()});
+                Reference{std::move(loaded.image), std::filesystem::path(file).filename().string()});
             glfwPostEmptyEvent();
-            return ReferencePointer(reference);
+            return std::pair(ReferencePointer(reference), std::move(loaded.warnings));
         });
     }
 
@@ -151,7 +146,9 @@ class Window
     {
         if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         try {
-            setReference(loading_.get());
+            auto [reference, warnings] = loading_.get();
+            setReference(std::move(reference));
+            for (const std::string& warning : warnings) state_.message = warning;
         } catch (const Error& error) {
             state_.message = error.what();
         }
@@ -416,7 +413,7 @@ class Window
     bool freshPresenter_ = false;
     std::string line_;
     std::shared_ptr<const SceneFacts> facts_;
-    std::future<ReferencePointer> loading_;
+    std::future<std::pair<ReferencePointer, std::vector<std::string>>> loading_;
     double reportedAt_ = 0, lostAt_ = -LOSS_SECONDS;
     std::deque<double> latencies_;
     ErrorMeter meter_;

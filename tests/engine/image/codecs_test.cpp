@@ -13,7 +13,8 @@
 namespace
 {
 
-std::vector<std::byte> jpeg(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgb)
+std::vector<std::byte> jpeg(uint32_t width, uint32_t height, const std::vector<uint8_t>& samples,
+                            J_COLOR_SPACE colors = JCS_RGB)
 {
     jpeg_compress_struct encoder = {};
     jpeg_error_mgr errors = {};
@@ -24,13 +25,13 @@ std::vector<std::byte> jpeg(uint32_t width, uint32_t height, const std::vector<u
     jpeg_mem_dest(&encoder, &data, &size);
     encoder.image_width = width;
     encoder.image_height = height;
-    encoder.input_components = 3;
-    encoder.in_color_space = JCS_RGB;
+    encoder.input_components = colors == JCS_CMYK ? 4 : 3;
+    encoder.in_color_space = colors;
     jpeg_set_defaults(&encoder);
     jpeg_set_quality(&encoder, 100, TRUE);
     jpeg_start_compress(&encoder, TRUE);
     for (uint32_t y = 0; y < height; ++y) {
-        auto* row = const_cast<JSAMPROW>(&rgb[size_t{3} * width * y]);
+        auto* row = const_cast<JSAMPROW>(&samples[size_t(encoder.input_components) * width * y]);
         jpeg_write_scanlines(&encoder, &row, 1);
     }
     jpeg_finish_compress(&encoder);
@@ -101,6 +102,19 @@ TEST(JpegCodec, DecodesColorsTopRowFirst)
     for (const size_t i : {size_t{0}, size_t{511}}) {
         for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(raster.rgba[4 * i + c], rgb[3 * i + c], 3);
         EXPECT_EQ(raster.rgba[4 * i + 3], 255);
+    }
+}
+
+// As Photoshop writes them, too, whose marker says that the inks are inverted.
+TEST(JpegCodec, OfInksIsRefusedForWhatItIs)
+{
+    try {
+        image::decodeJpeg(jpeg(8, 8, std::vector<uint8_t>(4 * 64, 100), JCS_CMYK), "Image \"it\"");
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "Image \"it\" is a JPEG of printing inks (CMYK), whose colors depend on paper "
+                  "and press: save it as RGB.");
     }
 }
 

@@ -8,11 +8,14 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+
+using namespace std::string_view_literals;
 
 namespace
 {
@@ -187,6 +190,44 @@ TEST_F(ImageFile, ReadsAnExrOfOneValueHoweverSmallItsFile)
         ASSERT_EQ(back.pixels.size(), even.size()) << compression;
         EXPECT_NEAR(back.pixels.back().y, 0.5, 1e-3) << compression;
     }
+}
+
+// Of more rows than are read at once; said when it is anywhere not 1, whatever the kind of file.
+TEST_F(ImageFile, AlphaIsIgnoredAndSaidToBe)
+{
+    constexpr int WIDTH = 3, HEIGHT = 600;
+    const auto warnings = [&](float lastAlpha) {
+        std::vector<float> color(WIDTH * HEIGHT, 0.25f), alpha(WIDTH * HEIGHT, 1);
+        alpha.back() = lastAlpha;
+        Imf::Header header(WIDTH, HEIGHT);
+        Imf::FrameBuffer buffer;
+        for (const char* name : {"R", "G", "B", "A"}) {
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            auto* samples = reinterpret_cast<char*>(*name == 'A' ? alpha.data() : color.data());
+            buffer.insert(name, Imf::Slice(Imf::FLOAT, samples, sizeof(float), WIDTH * sizeof(float)));
+        }
+        {
+            Imf::OutputFile file((folder / "alpha.exr").c_str(), header, 0);
+            file.setFrameBuffer(buffer);
+            file.writePixels(HEIGHT);
+        }
+        const image::Loaded loaded = image::read(folder / "alpha.exr");
+        EXPECT_EQ(loaded.image.pixels.back(), glm::vec3(0.25f));
+        return loaded.warnings;
+    };
+    EXPECT_EQ(warnings(1), std::vector<std::string>{});
+    EXPECT_EQ(warnings(0.99f),
+              std::vector<std::string>{"Picture \"" + (folder / "alpha.exr").string() +
+                                       "\" has an alpha channel that is not 1 everywhere: it is ignored."});
+
+    const std::string_view png = // one pixel, white, alpha 254
+        "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\6\0\0\0\x1f\x15\xc4\x89\0\0\0\rIDATx\xda"
+        "c\xf8\xff\xff\xff?\0\t\xfa\3\xfc\x8c"
+        "E\xa1W\0\0\0\0IEND\xae"
+        "B`\x82"sv;
+    const image::Loaded loaded = image::read(save("alpha.png", png));
+    EXPECT_EQ(loaded.image.pixels.at(0), glm::vec3(1));
+    EXPECT_EQ(loaded.warnings.size(), 1u);
 }
 
 TEST_F(ImageFile, FlippedBytesOfAnExrNeverCrash)

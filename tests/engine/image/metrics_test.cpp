@@ -193,6 +193,33 @@ TEST(Metrics, FlipErrorsLieWhereThePicturesDiffer)
     EXPECT_EQ(errors.values[0], 0);
 }
 
+// A picture of negatives is as far from black as its mirror image, and farther from that than either is from black.
+TEST(Metrics, ValuesBelowZeroCountAsMuchAsThoseAbove)
+{
+    const auto times = [](float factor, image::Image image) {
+        for (glm::vec3& pixel : image.pixels) pixel *= factor;
+        return image;
+    };
+    const image::Image black = flat(PAIR_WIDTH, PAIR_HEIGHT, {0, 0, 0}), light = picture(bars);
+    const image::Image negative = times(-1, light);
+    const image::Metrics above = image::measure(black, light), below = image::measure(black, negative),
+                         apart = image::measure(light, negative);
+    EXPECT_GT(above.flip, 0.3);
+    EXPECT_EQ(above.flip, below.flip);
+    EXPECT_EQ(above.psnr, below.psnr);
+    EXPECT_EQ(above.ssim, below.ssim);
+    EXPECT_NEAR(apart.psnr, above.psnr - 20 * std::log10(2), 1e-9);
+    EXPECT_GT(apart.flip, 0.3);
+    EXPECT_LT(apart.ssim, above.ssim);
+    EXPECT_EQ(image::measure(negative, negative).flip, 0);
+    EXPECT_EQ(image::measure(negative, times(-1, picture(movedBars))).flip,
+              image::measure(light, picture(movedBars)).flip);
+
+    image::Image one = light; // of all values
+    one.at(30, 20).g = -0.01f;
+    EXPECT_GT(image::measure(light, one).flip, 0);
+}
+
 TEST(Metrics, RefuseOtherSizesAndValuesThatAreNotFinite)
 {
     EXPECT_THROW(image::measure(flat(2, 3, {}), flat(3, 2, {})), Error);

@@ -63,9 +63,9 @@ class GltfUri : public testing::Test
         std::filesystem::create_symlink(root / "secret", root / "inside" / "link");
     }
     void TearDown() override { std::filesystem::remove_all(root); }
-    std::string read(const std::string& uri) const
+    std::string read(const std::string& uri, const std::filesystem::path& assetRoot = {}) const
     {
-        const auto bytes = gltf::readUri(uri, root / "inside");
+        const auto bytes = gltf::readUri(uri, {root / "inside", assetRoot});
         return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
     }
 
@@ -85,6 +85,31 @@ TEST_F(GltfUri, StaysInsideTheFolder)
     for (const std::string uri : {"../secret", "a b/../../secret", "%2e%2e/secret", "link", "/etc/passwd",
                                   "file:///etc/passwd", "http://localhost/", "%00", "", "missing", "a b", "%zz"})
         EXPECT_THROW(read(uri), Error) << uri;
+}
+
+TEST_F(GltfUri, ARootLetsFilesLieAnywhereBelowIt)
+{
+    const std::filesystem::path outside = root.parent_path() / (root.filename().string() + "_outside");
+    std::ofstream(outside) << "outside";
+    std::filesystem::create_directories(root / "textures");
+    std::ofstream(root / "textures" / "x") << "x";
+    std::filesystem::create_symlink(outside, root / "textures" / "out");
+    EXPECT_EQ(read("../textures/x", root), "x");
+    EXPECT_EQ(read("../textures/x", root / "textures"), "x");             // a root beside the scene's folder
+    EXPECT_EQ(read("a%20b/%C3%A4%25.bin", root / "textures"), "content"); // and below the folder as ever
+    EXPECT_EQ(read("link", root), "secret");                              // a link that stays below the root
+    for (const std::string& uri :
+         {"../../" + outside.filename().string(), std::string("../textures/out"), (root / "secret").string()})
+        EXPECT_THROW(read(uri, root), Error) << uri;
+    EXPECT_THROW(read("../secret", root / "textures"), Error);
+    EXPECT_THROW(read("a%20b/%C3%A4%25.bin", root / "missing"), Error);
+    try {
+        read("../textures/x");
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("--asset-root"), std::string::npos) << error.what();
+    }
+    std::filesystem::remove(outside);
 }
 
 TEST(GltfBase64, EveryLengthAndEveryFault)

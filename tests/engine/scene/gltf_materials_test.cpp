@@ -145,6 +145,30 @@ TEST(GltfMaterials, ImagesKeepTheirRowsAndChannels)
               (std::vector<uint8_t>{255, 128, 0, 255, 0, 0, 2, 255, 0, 0, 3, 255, 0, 0, 255, 255}));
 }
 
+// Two pixels of RGB, 16 bits a sample; and one gray pixel of 0x8080.
+constexpr const char* DEEP_PNG =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mNoYGBg/P9fyKShgZEBABn5A8c9k4zlAAAAAElF"
+    "TkSuQmCC";
+constexpr const char* DEEP_GRAY_PNG =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABEAAAAABq7kcWAAAAC0lEQVR42mNoaAAAAYMBAYuRVfIAAAAASUVORK5CYII=";
+
+TEST(GltfMaterials, SamplesOf16BitsAreKeptWhereEightDoNotHoldThem)
+{
+    const auto imageOf = [](const char* png) {
+        TinyGltf file;
+        file.json["images"] = {{{"uri", std::string("data:image/png;base64,") + png}}};
+        file.json["textures"] = {{{"source", 0}}};
+        file.material() = {{"normalTexture", {{"index", 0}}}};
+        return file.load().images.at(0);
+    };
+    const Image deep = imageOf(DEEP_PNG), gray = imageOf(DEEP_GRAY_PNG);
+    EXPECT_EQ(deep.deep, (std::vector<uint16_t>{0x8000, 0x0001, 0xffff, 0xffff, 0x1234, 0x8080, 0x0100, 0xffff}));
+    EXPECT_TRUE(deep.rgba.empty());
+    EXPECT_EQ(deep.sample(0), 0x8000 / 65535.0);
+    EXPECT_EQ(gray.rgba, (std::vector<uint8_t>{0x80, 0x80, 0x80, 0xff}));
+    EXPECT_TRUE(gray.deep.empty());
+}
+
 TEST(GltfMaterials, ValuesOutOfRangeAreClampedAndNamed)
 {
     TinyGltf file;

@@ -54,8 +54,8 @@ TEST_F(Compare, RefusesPicturesThatCannotBeCompared)
 {
     const std::string a = first(), page = directory / "page.html", json = directory / "c.json";
     expectRefusal({"compare", a, directory / "missing.exr", "--html", page}, 1, "missing.exr");
-    expectRefusal({"compare", a, save("wide.exr", waves(0, WIDTH + 1)), "--html", page, "--json", json}, 1,
-                  "60x40 pixels and the picture 61x40");
+    expectRefusal({"compare", a, save("wide.exr", waves(0, WIDTH + 1)), "--html", page, "--json", json}, 2,
+                  "60x40 pixels and the picture");
     image::Image broken = waves(0);
     broken.at(3, 5).g = std::numeric_limits<float>::quiet_NaN();
     const std::string bad = save("bad.exr", broken);
@@ -66,6 +66,20 @@ TEST_F(Compare, RefusesPicturesThatCannotBeCompared)
     expectRefusal({"compare", a, directory / "text.png"}, 1, "text.png");
     expectRefusal({"compare", a, a, "--html", "/nonexistent/page.html"}, 1, "/nonexistent");
     EXPECT_FALSE(std::filesystem::exists(page) || std::filesystem::exists(json));
+}
+
+TEST_F(Compare, ValuesBelowZeroCountAndAreSaid)
+{
+    image::Image negative = waves(0);
+    for (glm::vec3& pixel : negative.pixels) pixel *= -1;
+    const std::string json = directory / "c.json";
+    const Outcome outcome =
+        run({"compare", save("black.exr", image::Image{WIDTH, HEIGHT, std::vector<glm::vec3>(WIDTH * HEIGHT)}),
+             save("negative.exr", negative), "--max-flip", "0", "--json", json});
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_NE(outcome.err.find("negative.exr\" has 7200 values below 0"), std::string::npos) << outcome.err;
+    EXPECT_EQ(readJson(json)[0]["warnings"].size(), 1u);
+    EXPECT_GT(readJson(json)[0]["flip"], 0.1);
 }
 
 TEST_F(Compare, WritesTheFiguresOfTheContract)

@@ -76,6 +76,77 @@ TEST_F(Render, RefusesAWrongWorldWithExitCode1)
     EXPECT_EQ(directory.entries(), std::vector<std::string>{"preset.json"});
 }
 
+// Each pair of files that a command names, one of which it would write over the other.
+TEST_F(Render, NoOutputIsWrittenOverAnotherFile)
+{
+    const std::string out = directory / "out.exr", same = directory / "sub/../out.exr", link = directory / "link.exr";
+    std::filesystem::create_directory(directory / "sub");
+    std::filesystem::create_symlink("out.exr", link); // to nothing yet
+    const auto both = [&](const std::string& picture, const char* option, const std::string& other) {
+        SCOPED_TRACE(option);
+        expectRefusal(small(picture, {option, other}), 2, "--output and " + std::string(option) + " would both write");
+    };
+    both(out, "--stats", out);
+    both(out, "--stats", same);
+    both(link, "--checkpoint", out);
+    expectRefusal(small(out, {"--stats", directory / "a", "--checkpoint", directory / "a"}), 2,
+                  "--stats and --checkpoint would both write");
+    EXPECT_EQ(directory.entries(), (std::vector<std::string>{"link.exr", "sub"}));
+
+    TinyGltf file;
+    const std::string scene = directory / "scene.gltf", texture = directory / "texture.png";
+    const std::string preset = directory / "preset.json", sky = directory / "sky.exr", path = directory / "path.json";
+    image::write(texture, {1, 1, {glm::vec3(1)}}, {});
+    image::write(sky, {2, 1, {glm::vec3(1), glm::vec3(2)}}, {});
+    writeFile(preset, "{}");
+    writeFile(path, R"({"keyframes": [{"frame": 0, "position": [0, 0, 5], "target": [0, 0, 0]}]})");
+    file.json["images"] = {{{"uri", "texture.png"}}};
+    file.json["textures"] = {{{"source", 0}}};
+    file.material() = {{"emissiveTexture", {{"index", 0}}}};
+    writeFile(scene, file.text());
+    std::filesystem::create_hard_link(sky, directory / "hard.exr");
+    const auto over = [&](const std::string& output, const std::string& option, std::vector<std::string> words) {
+        words.insert(words.begin(), {"render", scene, "--size", "8x8", "--frames", "1"});
+        expectRefusal(words, 2, output + " would write over");
+        expectRefusal(words, 2, "which " + option + " reads");
+    };
+    const std::vector<std::string> before = directory.entries();
+    over("--stats", "SCENE", {"-o", out, "--stats", scene});
+    over("--output", "SCENE", {"-o", texture});
+    over("--output", "--environment", {"-o", sky, "--environment", sky});
+    over("--output", "--environment", {"-o", directory / "hard.exr", "--environment", sky});
+    over("--output", "--environment", {"-o", sky, "--set", "environment=" + sky});
+    over("--stats", "--preset", {"-o", out, "--stats", preset, "--preset", preset});
+    over("--checkpoint", "--camera-path", {"-o", out, "--checkpoint", path, "--camera-path", path});
+    over("--output", "--resume", {"-o", sky, "--resume", sky});
+    EXPECT_EQ(directory.entries(), before);
+    EXPECT_EQ(image::read(sky).image.pixels[1], glm::vec3(2));
+
+    expectRefusal({"info", scene, "--json", scene}, 2, "--json would write over");
+    expectRefusal({"compare", sky, sky, "--json", sky}, 2, "--json would write over");
+    expectRefusal({"compare", sky, sky, "--html", directory / "x.html", "--json", directory / "x.html"}, 2,
+                  "--html and --json would both write");
+    expectRefusal({"view", scene, "--report", scene}, 2, "--report would write over");
+    image::write(directory / "reference.exr", {1, 1, {glm::vec3(1)}}, {});
+    expectRefusal({"converge", scene, "-o", directory.path(), "--reference", directory / "reference.exr"}, 2,
+                  "--output would write over");
+    writeFile(directory / "settings.json", "{}");
+    expectRefusal({"correlate", scene, "-o", directory.path(), "--preset", directory / "settings.json"}, 2,
+                  "--output would write over");
+}
+
+TEST_F(Render, ALinkIsWrittenThroughAndADeviceWrittenTo)
+{
+    const std::string out = directory / "out.EXR", link = directory / "link.exr"; // names come in any case
+    std::filesystem::create_symlink("out.EXR", link);
+    runWell(small(link, {"--frames", "1"}));
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(pixels(out).size(), 32u * 18u);
+    runWell(small(directory / "out.PNG", {"--frames", "1", "--stats", "/dev/null"}));
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_EQ(pixels(directory / "out.PNG").size(), 32u * 18u);
+}
+
 TEST_F(Render, EqualSettingsAndSeedsGiveEqualPixelsAndOtherSeedsOthers)
 {
     const std::string first = directory / "first.exr", second = directory / "second.exr",
@@ -171,15 +242,22 @@ TEST_F(Render, SettingsOfStatsAreAPreset)
     EXPECT_EQ(pixels(first), pixels(second));
 }
 
-TEST_F(Render, CtrlCWritesWhatThereIsMarkedAsPartial)
+class RenderEnded : public Render, public testing::WithParamInterface<int>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Signals, RenderEnded, testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         [](const auto& info) { return std::string(sigabbrev_np(info.param)); });
+
+TEST_P(RenderEnded, WritesWhatThereIsMarkedAsPartial)
 {
     const std::string out = directory / "out.exr", stats = directory / "stats.json";
     writeFile(out, "before");
-    // Ctrl-C before the first frame ends the program at once and leaves the file alone; then a slower machine gets
+    // A signal before the first frame ends the program at once and leaves the file alone; then a slower machine gets
     // more time.
     for (auto delay = 1000ms; delay < 60s; delay *= 2) {
-        const Outcome outcome = run(small(out, {"--frames", "1000000", "--stats", stats}), delay);
-        EXPECT_EQ(outcome.exitCode, 130);
+        const Outcome outcome = run(small(out, {"--frames", "1000000", "--stats", stats}), delay, GetParam());
+        EXPECT_EQ(outcome.exitCode, 128 + GetParam());
         if (readFile(out) == "before") continue;
         EXPECT_NE(outcome.err.find("partial"), std::string::npos) << outcome.err;
         break;
@@ -228,6 +306,39 @@ TEST_F(Render, AMovingCameraWritesItsLastFrameFromWhereItIsThen)
     for (size_t i = 0; i < a.size(); ++i) different += glm::distance(a[i], b[i]) > 1e-3f * (1 + glm::length(a[i]));
     EXPECT_LT(different, a.size() / 50); // rounding may move an edge
     EXPECT_NE(pixels(still), b);
+}
+
+// ARCHITECTURE.md, Environment: which way a sky's columns and rows lie, and that it is not mirrored.
+TEST_F(Render, ASkyLiesAsDocumented)
+{
+    const std::string scene = directory / "scene.gltf", sky = directory / "sky.exr", out = directory / "out.exr",
+                      path = directory / "path.json";
+    TinyGltf file; // a triangle at the origin, behind the camera or beside what it looks at
+    writeFile(scene, file.text());
+    image::Image picture{8, 4, {}};
+    for (uint32_t i = 0; i < 32; ++i) picture.pixels.emplace_back(1 + i % 8, 1 + i / 8, 1);
+    image::write(sky, picture, {});
+    const auto look = [&](const glm::dvec3& towards, const glm::dvec3& up) { // 2x2 pixels about the direction
+        const glm::dvec3 from(50, 60, 70), to = from + towards;
+        const nlohmann::json key = {{"frame", 0},
+                                    {"position", {from.x, from.y, from.z}},
+                                    {"target", {to.x, to.y, to.z}},
+                                    {"up", {up.x, up.y, up.z}},
+                                    {"yfov", 1}};
+        writeFile(path, nlohmann::json{{"keyframes", {key}}}.dump());
+        runWell({"render", scene, "-o", out, "--size", "2x2", "--frames", "1", "--environment", sky, "--camera-path",
+                 path});
+        return pixels(out);
+    };
+    const std::pair<glm::dvec3, float> sides[] = {{{1, 0, 0}, 3}, {{0, 0, 1}, 5}, {{-1, 0, 0}, 7}, {{0, 0, -1}, 1}};
+    for (const auto& [towards, left] : sides) {
+        const float right = left == 7 ? 0 : left + 1;
+        EXPECT_EQ(look(towards, {0, 1, 0}),
+                  (std::vector<glm::vec3>{{1 + left, 2, 1}, {1 + right, 2, 1}, {1 + left, 3, 1}, {1 + right, 3, 1}}))
+            << towards.x << " " << towards.z;
+    }
+    for (const glm::vec3& pixel : look({0, 1, 0}, {1, 0, 0})) EXPECT_EQ(pixel.g, 1);
+    for (const glm::vec3& pixel : look({0, -1, 0}, {1, 0, 0})) EXPECT_EQ(pixel.g, 4);
 }
 
 TEST_F(Render, NoFileIsWrittenWhenTheWorkFails)
