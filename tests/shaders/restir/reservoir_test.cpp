@@ -60,6 +60,7 @@ TEST_F(ReservoirTest, MergesAsInDoublePrecision)
     for (size_t i = 0; i < merges.size(); ++i) {
         const double expected = ownWeight(merges[i]) + historyWeight(merges[i]);
         ASSERT_NEAR(double(merged[i].x) + merged[i].y, expected, 3e-6 * expected) << i;
+        ASSERT_NEAR(merged[i].w, ownWeight(merges[i]), 3e-6 * ownWeight(merges[i])) << i;
         const double threshold = ownWeight(merges[i]) / expected; // of keeping the own sample
         if (std::abs(merges[i].u - threshold) < 1e-5) continue;
         EXPECT_EQ(merged[i].z, merges[i].u < threshold ? 0.0f : 1.0f) << i;
@@ -74,6 +75,32 @@ TEST_F(ReservoirTest, CarriesWhatRoundingTook)
     const double expected = 1 + (double(1.3f) - 1) / (double(1u << 20) + 1);
     EXPECT_NEAR(double(merged.x) + merged.y, expected, 1e-12);
     EXPECT_GT(std::abs(double(merged.x) - expected), 1e-9); // the sum alone does not hold it
+}
+
+// After 2^20 frames the sum is their mean, and its two parts, by which weighted color shows the samples, add up to it.
+TEST_F(ReservoirTest, DoesNotDriftInAMillionFrames)
+{
+    constexpr uint32_t FRAMES = 1u << 20, CHAINS = 8;
+    std::vector<glm::uvec2> chains;
+    for (uint32_t i = 0; i < CHAINS; ++i) chains.emplace_back(0x9e3779b9u * i, FRAMES);
+    const gpu::Buffer input = upload("Chains", chains), output = create<glm::vec4>("Ends", CHAINS);
+    run({.shader = TEST_SPIRV_DIR "/drift_test",
+         .buffers = {{"Chains", &input}, {"Ends", &output}},
+         .threads = {CHAINS}});
+    const std::vector<glm::vec4> ends = download<glm::vec4>(output);
+    for (uint32_t i = 0; i < CHAINS; ++i) {
+        uint32_t state = chains[i].x;
+        double sum = 0, last = 0;
+        for (uint32_t frame = 0; frame < FRAMES; ++frame) {
+            state = state * 1664525u + 1013904223u;
+            last = std::ldexp(double(state >> 8), -23);
+            sum += last;
+        }
+        const double mean = sum / FRAMES;
+        EXPECT_NEAR(double(ends[i].x) + ends[i].y, mean, 2e-7 * mean) << i;
+        EXPECT_EQ(double(ends[i].w), last);
+        EXPECT_NEAR(ends[i].z, last / FRAMES, 1e-6 * last / FRAMES) << i; // w_n
+    }
 }
 
 TEST_F(ReservoirTest, StaysFiniteAtTheEnds)
