@@ -1,27 +1,40 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A million frames of a resting camera, one chain per thread: weight sums are drawn by a generator that C++ has, too.
+// Many frames of a resting camera, one chain per thread: weight sums are drawn by a generator that C++ has, too. Mesa's CPU
+// driver leaves loops after 65536 turns, so that chains go on in the next dispatch.
 #include "restir/reservoir.glsl"
 #include "shared/types.h"
 layout(local_size_x = 64) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Chains { uvec2 chains[]; }; // start of the generator, frames
-layout(set = SET_PASS, binding = 1, std430) writeonly buffer Ends { vec4 ends[]; };     // S, carry, w_n, S_n of the last
+struct Chain {
+    uint generator; // state
+    uint frames;    // done
+    float weightSum;
+    float carry;
+    float weight; // w_n of the last frame,
+    float single; // and its S_n
+    uint padding0;
+    uint padding1;
+};
+const uint FRAMES = 32768u; // of a dispatch
+layout(set = SET_PASS, binding = 0, std430) buffer Chains { Chain chains[]; };
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(chains.length())) return;
-    uint state = chains[i].x;
-    Reservoir history = EMPTY;
-    float weight = 0.0;
-    float single = 0.0;
-    for (uint frame = 0u; frame < chains[i].y; ++frame) {
-        state = state * 1664525u + 1013904223u;
-        single = float(state >> 8u) * exp2(-23.0);
+    Chain chain = chains[i];
+    for (uint n = 0u; n < FRAMES; ++n) {
+        chain.generator = chain.generator * 1664525u + 1013904223u;
+        chain.single = float(chain.generator >> 8u) * exp2(-23.0);
         Reservoir here = EMPTY;
-        here.weightSum = single;
-        if (frame > 0u) mergeHistory(here, history, 1.0, 1.0, 1.0, float(frame), 0.5, weight);
-        history = here;
+        here.weightSum = chain.single;
+        Reservoir history = EMPTY;
+        history.weightSum = chain.weightSum;
+        history.carry = chain.carry;
+        if (chain.frames > 0u) mergeHistory(here, history, 1.0, 1.0, 1.0, float(chain.frames), 0.5, chain.weight);
+        chain.weightSum = here.weightSum;
+        chain.carry = here.carry;
+        ++chain.frames;
     }
-    ends[i] = vec4(history.weightSum, history.carry, weight, single);
+    chains[i] = chain;
 }
