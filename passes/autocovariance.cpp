@@ -3,6 +3,7 @@
 #include "engine/base/check.h"
 #include "passes/estimator.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace passes
@@ -188,6 +189,14 @@ std::array<glm::vec3, 3> resolvingTargets(Method method)
     return targets;
 }
 
+Settings lawSettings(Settings settings)
+{
+    settings.temporal = false;
+    settings.spatial = 0;
+    settings.color = Color::Chosen;
+    return settings;
+}
+
 bool lawHolds(const Settings& settings, bool moving)
 {
     return settings.temporal && settings.spatial == 0 && !moving;
@@ -198,9 +207,13 @@ bool accumulates(Method method)
     return resolvingTargets(method) == resolvingTargets(Method::Pt);
 }
 
-statistics::BatchValue predictedAutocovariance(const FrameLaw& law, double frame)
+// Frame M shows c_M = S chi(Y_M), or A_M = c / M + (1 - 1 / M) c_(M-1), c the single frame M alone: the mean of c_M
+// over which of the two was chosen. So frames covary by (1 - 1 / M) Var c_(M-1), or by (1 - 1 / M) Var A_(M-1), with
+// Var c_n = V / n + (1 - 1 / n) P and Var A_n = V / n^2 + (1 - 1 / n)^2 Var c_(n-1).
+statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame)
 {
-    return statistics::combination(1 / frame, law.variance, 1 - 2 / frame, law.plateau);
+    const double kept = color == Color::Chosen ? 1 : 1 - 2 / std::max(frame - 1, 2.0);
+    return statistics::combination(1 / frame, law.variance, (1 - 2 / frame) * kept, law.plateau);
 }
 
 } // namespace passes

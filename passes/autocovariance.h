@@ -93,6 +93,9 @@ std::optional<FrameLaw> measureLaw(Renderer& renderer, uint32_t frames, const st
 
 std::array<glm::vec3, 3> resolvingTargets(Method method);
 
+// Of the single frames that the law of these settings is made of: without reuse, and showing the chosen samples.
+Settings lawSettings(Settings settings);
+
 // Whether the law of the chain holds: temporal reuse alone, of a resting camera.
 bool lawHolds(const Settings& settings, bool moving);
 
@@ -100,7 +103,9 @@ bool lawHolds(const Settings& settings, bool moving);
 // frames.
 bool accumulates(Method method);
 
-// The autocovariance between frames M-1 and M <= M_c + 1 that the law predicts: V / M + (1 - 2 / M) P.
-statistics::BatchValue predictedAutocovariance(const FrameLaw& law, double frame);
+// The autocovariance between frames M-1 and M <= M_c + 1 that the law predicts, for each way of reading color: of
+// chosen samples V / M + (1 - 2 / M) P; of all with their weights V / M + (1 - 2 / M) (1 - 2 / (M - 1)) P, where the
+// first frame shows whole trees, so that for M = 2 the law of the path tracer is to be given.
+statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame);
 
 } // namespace passes

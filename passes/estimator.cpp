@@ -4,6 +4,7 @@
 #include "engine/base/error.h"
 #include "shaders/shared/frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace passes
@@ -28,6 +29,19 @@ const Estimator& estimatorOf(Method method)
     const Estimator& estimator = estimators().at(static_cast<size_t>(method) - 1);
     checkUnbiased(estimator);
     return estimator;
+}
+
+bool oneHot(const Estimator& estimator)
+{
+    return std::ranges::all_of(estimator.target, [](const glm::vec3& target) {
+        return (target.r != 0) + (target.g != 0) + (target.b != 0) == 1;
+    });
+}
+
+Color colorReading(const Settings& settings)
+{
+    if (settings.method == Method::Pt || oneHot(estimatorOf(settings.method))) return Color::Chosen;
+    return settings.color;
 }
 
 void checkUnbiased(const Estimator& estimator)

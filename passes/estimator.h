@@ -27,6 +27,13 @@ const Estimator& estimatorOf(Method method);
 
 const std::vector<Estimator>& estimators();
 
+// Whether each target is one channel alone: then all samples of a reservoir have the same color per unit of target, and
+// every way of reading color shows the same picture.
+bool oneHot(const Estimator& estimator);
+
+// How this method's color has to be read: Chosen where Settings::color makes no difference.
+Color colorReading(const Settings& settings);
+
 // Throws Error naming the estimator, the channel and the condition that fails.
 void checkUnbiased(const Estimator& estimator);
 

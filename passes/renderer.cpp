@@ -54,7 +54,7 @@ constexpr uint64_t RESERVOIR_PATH_BYTES = 3 * sizeof(glm::uvec4);
 struct PixelBytes {
     uint64_t surfaces = 2 * sizeof(glm::uvec4), color = sizeof(glm::vec4), film = 2 * sizeof(glm::vec4);
     uint64_t words = 0, paths = 0; // of each of the two sets of reservoirs
-    uint64_t neighbors = 0, shifted = 0;
+    uint64_t neighbors = 0, shifted = 0, mergedColor = 0;
 };
 
 PixelBytes pixelBytes(const Settings& settings)
@@ -66,6 +66,7 @@ PixelBytes pixelBytes(const Settings& settings)
     bytes.paths = settings.shift == Shift::Replay ? 0 : count * RESERVOIR_PATH_BYTES;
     bytes.neighbors = settings.spatial * sizeof(uint32_t);
     bytes.shifted = count * settings.spatial * sizeof(glm::vec4);
+    bytes.mergedColor = colorReading(settings) == Color::Chosen ? 0 : sizeof(glm::vec4);
     return bytes;
 }
 
@@ -162,6 +163,7 @@ void Renderer::createBuffers()
     historyPaths_ = perPixel("HistoryPaths", bytes.paths, "--size or --shift");
     neighbors_ = perPixel("Neighbors", bytes.neighbors, "--size or --spatial");
     shifted_ = perPixel("Shifted", bytes.shifted, "--size or --spatial");
+    mergedColor_ = perPixel("MergedColor", bytes.mergedColor, "--size or --color");
 
     frame_.width = settings_.width;
     frame_.height = pictureHeight();
@@ -240,11 +242,17 @@ std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Varian
                                .scene = *scene_,
                                .variant = variant,
                                .frame = {{"Frame", &frameUniform_}, {"Counters", &counters_}}};
-    NamedBuffers all = {{"Surfaces", &surfaces_},   {"Color", &color_},
-                        {"Film", &film_},           {"Reservoirs", &reservoirs_},
-                        {"History", &history_},     {"ReservoirPaths", &reservoirPaths_},
-                        {"Neighbors", &neighbors_}, {"HistoryPaths", &historyPaths_},
-                        {"Shifted", &shifted_},     {"PreviousPixels", &previousPixels_}};
+    NamedBuffers all = {{"Surfaces", &surfaces_},
+                        {"Color", &color_},
+                        {"Film", &film_},
+                        {"Reservoirs", &reservoirs_},
+                        {"History", &history_},
+                        {"ReservoirPaths", &reservoirPaths_},
+                        {"Neighbors", &neighbors_},
+                        {"HistoryPaths", &historyPaths_},
+                        {"Shifted", &shifted_},
+                        {"MergedColor", &mergedColor_},
+                        {"PreviousPixels", &previousPixels_}};
     all.insert(all.end(), more.begin(), more.end());
     auto stage = std::make_unique<Stage>(context, name, all);
     stats_.compileSeconds += secondsSince(start);

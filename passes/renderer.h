@@ -136,7 +136,8 @@ class Renderer
     std::shared_ptr<PipelinePool> pipelines_;
     std::shared_ptr<const scene::GpuScene> scene_;
     gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
-    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, previousPixels_;
+    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, mergedColor_,
+        previousPixels_;
     std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,
         spatialGather_, accumulate_, reproject_;
 };

@@ -31,6 +31,10 @@ constexpr std::array<const char*, 3> wordsOf(Shift)
 {
     return {"replay", "reconnection", "hybrid"};
 }
+constexpr std::array<const char*, 2> wordsOf(Color)
+{
+    return {"chosen", "weighted"};
+}
 constexpr std::array<const char*, 2> wordsOf(PixelFilter)
 {
     return {"center", "box"};

@@ -15,6 +15,7 @@ namespace passes
 
 enum class Method : uint32_t { Pt, RestirPt, RgbRestir, GroupedRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
+enum class Color : uint32_t { Chosen, Weighted };
 enum class PixelFilter : uint32_t { Center, Box };
 
 struct Settings {
@@ -24,6 +25,7 @@ struct Settings {
     bool temporal = true;
     uint32_t spatial = 3;    // K
     float spatialRadius = 0; // pixels; 0: by the picture's height
+    Color color = Color::Weighted;
     uint32_t maxBounces = 5; // scattering events
     PixelFilter pixelFilter = PixelFilter::Center;
     uint32_t width = 640;
@@ -72,6 +74,7 @@ void visitSettings(AnySettings& s, Visitor&& visit)
     visit(Knob{"temporal", 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
     visit(Knob{"spatial", 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
     visit(Knob{"spatial-radius", 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
+    visit(Knob{"color", 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs. One picture for rgb-restir, whose samples have one color. Unbiased, free."}, s.color);
     visit(Knob{"max-bounces", 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
     visit(Knob{"pixel-filter", 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
     visit(Knob{"size", 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});

@@ -26,6 +26,8 @@ static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
               uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
               uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
 
+static_assert(uint32_t(Color::Chosen) == shared::COLOR_CHOSEN && uint32_t(Color::Weighted) == shared::COLOR_WEIGHTED);
+
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
                     const scene::TraversalStack& stack)
 {
@@ -38,6 +40,7 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
     if (settings.method != Method::Pt) {
         v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
         v.SHIFT_MAP = uint32_t(settings.shift);
+        v.COLOR_READING = uint32_t(colorReading(settings));
     }
     v.HAS_ALPHA = features.alpha;
     v.HAS_SPECULAR = features.specular;

@@ -7,6 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_PASS, binding = 1, std430) buffer Reservoirs { uvec4 reservoirs[]; };
 layout(set = SET_PASS, binding = 2, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
 layout(set = SET_PASS, binding = 3, std430) writeonly buffer Color { vec4 color[]; }; // seen directly; gather adds the rest
+layout(set = SET_PASS, binding = 4, std430) writeonly buffer MergedColor { vec4 mergedColor[]; };
 
 #include "candidates.glsl"
 #include "restir/estimator.glsl"
@@ -14,11 +15,13 @@ layout(set = SET_PASS, binding = 3, std430) writeonly buffer Color { vec4 color[
 STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
 
 Reservoir canonical[MAX_RESERVOIRS];
+vec3 allPaths = vec3(0.0); // of the tree: what the path tracer would add
 
 void offer(PathSample y, vec3 f, float density)
 {
     f = finiteOrCounted(f, STAGE);
     vec3 stored = finiteOrCounted(f * density, STAGE);
+    if (COLOR_READING == COLOR_WEIGHTED) allPaths += f;
     float u = decisionFloat(decisionRandom(y.seed.pixel, STREAM_CANONICAL + y.leaf).x); // one for all reservoirs
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!consider(canonical[c], targetOf(c, f), u)) continue;
@@ -37,6 +40,7 @@ void main()
     vec3 emission;
     bool seen = offerCandidates(PathSeed(frame.frame, index), pixel, emission);
     color[index] = vec4(finiteOrCounted(emission, STAGE), 0.0);
+    if (COLOR_READING == COLOR_WEIGHTED) mergedColor[index] = vec4(allPaths, 0.0);
     storeReservoirs(index, canonical);
     storeReservoirsConfidence(index, seen ? 1u : 0u); // also when no path carried light: that is news too
     countCandidates();

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Stage 4. Merges the neighbors' reservoirs (defensive pairwise MIS), resolves the color, and leaves the history of the
+// Stage 4. Merges the neighbors' reservoirs (defensive pairwise MIS), resolves the color (shown: of the chosen samples, or of all with their weights), and leaves the history of the
 // next frame. With no neighbors it only resolves and hands on.
 #define STAGE STAGE_SPATIAL_GATHER
 #include "lib/frame.glsl"
@@ -13,6 +13,7 @@ TABLE(SET_PASS, 3, Shifted);
 layout(set = SET_PASS, binding = 4, std430) buffer History { uvec4 history[]; };
 layout(set = SET_PASS, binding = 5, std430) buffer HistoryPaths { uvec4 historyPaths[]; };
 layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
+layout(set = SET_PASS, binding = 7, std430) readonly buffer MergedColor { vec4 mergedColor[]; };
 
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
@@ -74,6 +75,7 @@ void main()
     uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
     precise float change[MAX_RESERVOIRS];
     float kept[MAX_RESERVOIRS]; // MIS weight of the own sample
+    vec3 weighted = vec3(0.0);  // sum over j of w_j chi(T y_j)
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         merged[c] = EMPTY;
         lender[c] = pixel;
@@ -95,6 +97,7 @@ void main()
             precise float taken = part * share(neighborConfidence, b, confidence); // eps_j
             change[c] += weight - taken * r[c].weightSum;
             kept[c] -= taken;
+            if (COLOR_READING == COLOR_WEIGHTED) weighted += weight * colorOf(c, fHere);
             if (!consider(merged[c], weight, u)) continue;
             merged[c].chosen = other.chosen;
             merged[c].f = fHere;
@@ -102,8 +105,10 @@ void main()
         }
     }
     float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + frame.neighborCount).x);
-    vec3 sum = color[pixel].rgb;
+    vec3 chosen = vec3(0.0);
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (COLOR_READING == COLOR_WEIGHTED)
+            weighted += (r[c].weightSum * kept[c] + r[c].carry) * colorOf(c, r[c].f);
         if (merged[c].weightSum > 0.0 && !consider(merged[c], r[c].weightSum * kept[c], u)) {
             r[c].chosen = merged[c].chosen;
             r[c].f = merged[c].f;
@@ -115,10 +120,13 @@ void main()
         precise float carry = change[c] - (total - r[c].weightSum);
         r[c].weightSum = total;
         r[c].carry = carry;
-        sum += resolved(c, r[c]);
+        chosen += resolved(c, r[c]);
     }
     countTrees(r);
     storeHistory(pixel, r);
     storeHistoryConfidence(pixel, uint(confidence + neighborConfidence));
-    color[pixel] = vec4(finiteOrCounted(sum, STAGE), 0.0);
+    vec3 light = chosen;
+    // Without neighbors nothing was merged here: the merge before stands.
+    if (COLOR_READING == COLOR_WEIGHTED) light = neighborConfidence > 0.0 ? weighted : mergedColor[pixel].rgb;
+    color[pixel] = vec4(finiteOrCounted(color[pixel].rgb + light, STAGE), 0.0);
 }

@@ -10,6 +10,7 @@ TABLE(SET_PASS, 1, History);
 TABLE(SET_PASS, 2, HistoryPaths);
 layout(set = SET_PASS, binding = 3, std430) buffer Reservoirs { uvec4 reservoirs[]; };
 layout(set = SET_PASS, binding = 4, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
+layout(set = SET_PASS, binding = 5, std430) writeonly buffer MergedColor { vec4 mergedColor[]; };
 
 #include "integrand.glsl"
 #include "restir/estimator.glsl"
@@ -62,13 +63,21 @@ void main()
     }
     uint confidence = loadReservoirsConfidence(pixel);
     float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs
+    vec3 color = vec3(0.0); // w_n chi(x) + w_h chi(T y)
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         float rho = ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f));
         float historyRho = ratio(targetOf(c, fHere[c]), targetOf(c, old[c].f));
-        if (!mergeHistory(r[c], old[c], rho, historyRho, float(confidence), float(historyConfidence), u)) continue;
+        float weight; // w_n
+        bool replaced = mergeHistory(r[c], old[c], rho, historyRho, float(confidence), float(historyConfidence), u, weight);
+        if (COLOR_READING == COLOR_WEIGHTED) {
+            float historyWeight = r[c].weightSum - weight + r[c].carry; // w_h, of the sum that does not drift
+            color += weight * colorOf(c, r[c].f) + historyWeight * colorOf(c, fHere[c]);
+        }
+        if (!replaced) continue;
         r[c].chosen = old[c].chosen;
         r[c].f = fHere[c];
     }
+    if (COLOR_READING == COLOR_WEIGHTED) mergedColor[pixel] = vec4(finiteOrCounted(color, STAGE), 0.0);
     storeReservoirs(pixel, r);
     storeReservoirsConfidence(pixel, confidence + historyConfidence);
     countShifts();

@@ -8,11 +8,14 @@
 // p_hat_c
 float targetOf(uint c, vec3 f) { return dot(frame.target[c].xyz, f); }
 
-// Color of reservoir c: resolve[c] f(Y) W with W = S / p_hat_c(f(Y)).
-vec3 resolved(uint c, Reservoir r)
+// chi_c: the color that a sample gives to the pixel per unit of its weight in reservoir c; 0 where there is no sample.
+vec3 colorOf(uint c, vec3 f)
 {
-    float target = targetOf(c, r.f);
-    return target > 0.0 ? frame.resolve[c].xyz * (r.f / target) * (r.weightSum + r.carry) : vec3(0.0);
+    float target = targetOf(c, f);
+    return target > 0.0 ? frame.resolve[c].xyz * (f / target) : vec3(0.0);
 }
+
+// Color of reservoir c: resolve[c] f(Y) W with W = S / p_hat_c(f(Y)).
+vec3 resolved(uint c, Reservoir r) { return colorOf(c, r.f) * (r.weightSum + r.carry); }
 
 #endif

@@ -38,14 +38,15 @@ float rest(float a, float x, float b) { return x > 1.0 ? (b / x) / (a + b / x) :
 
 // Eqs. 9 and 13 for canonical sample and history: `here` stands in its own domain, `history` in another; rho is the ratio
 // of targets (other over own domain) of here's sample, historyRho likewise (here's over its own) of history's sample.
-// True when history's sample is chosen: the caller replaces sample and f.
+// True when history's sample is chosen: the caller replaces sample and f. `weight` is w_n, of here's sample; the rest of the
+// sum is w_h.
 //
 // Summing thousands of frames with c / (c + 1) S + 1 / (c + 1) S_n loses up to 1e-2 to rounding (M_c = 10^6). Hence the
 // complement form: S' = v + (w_n - eps v), eps = 1 - weight of history, with the rounding of v and of the sum carried on.
 bool mergeHistory(inout Reservoir here, Reservoir history, float rho, float historyRho, float confidence,
-                  float historyConfidence, float u)
+                  float historyConfidence, float u, out precise float weight)
 {
-    precise float weight = here.weightSum * rest(historyConfidence, rho, confidence); // w_n
+    weight = here.weightSum * rest(historyConfidence, rho, confidence); // w_n
     if (historyRho == 0.0 || history.weightSum == 0.0) { // history has nothing to give, but its confidence counts
         here.weightSum = weight;
         here.carry = 0.0;

@@ -35,7 +35,9 @@
     X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")                     \
     X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
     X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
-    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")
+    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")                                                \
+    X(30, uint, COLOR_READING, 0u,                                                                                     \
+      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last")
 
 SHARED_BEGIN
 
@@ -43,6 +45,10 @@ SHARED_BEGIN
 SHARED_CONST uint SHIFT_REPLAY = 0u;
 SHARED_CONST uint SHIFT_RECONNECTION = 1u;
 SHARED_CONST uint SHIFT_HYBRID = 2u;
+
+// Values of COLOR_READING.
+SHARED_CONST uint COLOR_CHOSEN = 0u;
+SHARED_CONST uint COLOR_WEIGHTED = 1u;
 
 SHARED_END
 

@@ -27,6 +27,8 @@ namespace
 struct Options {
     std::vector<std::string> scenes = {"cornell", "hall", "lamps", "dim"};
     std::vector<std::string> shifts = {"replay", "reconnection", "hybrid"};
+    std::vector<std::string> colors = {
+        "weighted"};                         // how restir-pt's is read; the first is what others are compared with
     std::vector<std::string> shaders = {""}; // folders of shader trees that race; empty: the built-in one
     std::vector<std::string> tunings = {""}; // of the device, which race, too; empty: what its class gets
     std::string device;
@@ -42,7 +44,7 @@ struct Options {
 
 struct Case {
     std::string shaders; // and tuning; or what is compiled in beyond need
-    std::string method;
+    std::string method;  // or "restir-pt:COLOR"
     std::string shift;
     std::unique_ptr<passes::Renderer> renderer;
     std::map<std::string, std::vector<double>> milliseconds; // by stage, of every round
@@ -157,7 +159,7 @@ nlohmann::ordered_json report(const std::string& scene, const std::vector<Case>&
             row["stage_ms"][stage] = median(ms);
             stages += fmt::format(" {} {:.1f}", stage, median(ms));
         }
-        if (c.method == "rgb-restir") {
+        if (c.method != "pt" && c.method != "restir-pt") {
             const Case& one = find(c.shaders, "restir-pt", c.shift);
             row["to_restir_pt"] = medianRatio(c.totals, one.totals);
             row["processor_to_restir_pt"] = medianRatio(c.processor, one.processor);
@@ -277,8 +279,9 @@ void run(const Options& options)
         std::vector<Case> cases;
         for (size_t tree = 0; tree < devices.size(); ++tree) {
             const passes::Renderer* sibling = nullptr;
-            const auto add = [&](const std::string& method, const std::string& shift) {
+            const auto add = [&](const std::string& method, const std::string& shift, const std::string& color) {
                 passes::Settings settings;
+                passes::set(settings, "color", color);
                 passes::set(settings, "method", method);
                 passes::set(settings, "shift", shift);
                 passes::set(settings, "size", options.size);
@@ -287,11 +290,16 @@ void run(const Options& options)
                                         : std::make_unique<passes::Renderer>(devices[tree], scene, settings);
                 if (!sibling) sibling = renderer.get();
                 cases.push_back(
-                    {.shaders = contestants[tree], .method = method, .shift = shift, .renderer = std::move(renderer)});
+                    {.shaders = contestants[tree],
+                     .method = method == "restir-pt" && color != options.colors[0] ? method + ":" + color : method,
+                     .shift = shift,
+                     .renderer = std::move(renderer)});
             };
-            add("pt", "replay");
-            for (const std::string& shift : options.shifts)
-                for (const char* method : {"restir-pt", "rgb-restir"}) add(method, shift);
+            add("pt", "replay", options.colors[0]);
+            for (const std::string& shift : options.shifts) {
+                for (const std::string& color : options.colors) add("restir-pt", shift, color);
+                add("rgb-restir", shift, options.colors[0]);
+            }
         }
         image::Image reference;
         if (options.reference > 0)
@@ -314,6 +322,8 @@ int main(int count, char** arguments)
     app.add_option("scenes", options.scenes, "built-in names or .gltf/.glb files");
     app.add_option("--shifts", options.shifts, "shift maps")
         ->check(CLI::IsMember({"replay", "reconnection", "hybrid"}));
+    app.add_option("--colors", options.colors, "how restir-pt's color is read")
+        ->check(CLI::IsMember({"chosen", "weighted"}));
     app.add_option("--shaders", options.shaders, "folders of shader trees, raced against each other");
     app.add_option("--tunings", options.tunings, "NAME=VALUE,... of the device, raced against each other; '': none");
     app.add_option("--device", options.device, "index or part of a name");

@@ -7,7 +7,7 @@ program=$1 out=$2
 shift 2
 scenes=("$@")
 [ ${#scenes[@]} -gt 0 ] || scenes=(cornell hall lamps dim ${SPONZA:+"$SPONZA"})
-methods=pt,restir-pt:spatial=0,restir-pt,rgb-restir:spatial=0,rgb-restir
+methods=pt,restir-pt:spatial=0,restir-pt:color=chosen,restir-pt,rgb-restir:spatial=0,rgb-restir
 common=(--size "${SIZE:-128x72}" --methods "$methods" --runs "${RUNS:-8}" --resume
     --reference-frames "${REFERENCE_FRAMES:-1024}" ${DEVICE:+--device "$DEVICE"})
 mkdir -p "$out"

@@ -12,6 +12,7 @@
 namespace
 {
 
+using passes::Color;
 using passes::Method;
 using passes::Renderer;
 using passes::Settings;
@@ -75,30 +76,41 @@ double standardError(const statistics::Estimate& estimate)
 
 } // namespace
 
-// Trees of several paths, light seen directly, and all three estimators: sigma^2 / M for RGB, V / M + (1 - 2 / M)
-// P for the others, within what both sides' jackknife says. RGB falls with slope -1; the others level off at P.
+// Trees of several paths, light seen directly, all three estimators, both ways of reading color: sigma^2 / M for RGB, V
+// / M and a part of P for the others, within what both sides' jackknife says. RGB falls with slope -1; the others level
+// off at P.
 TEST_F(Autocovariance, FollowsTheClosedForm)
 {
     constexpr uint32_t RUNS = 64, FRAMES = 128, LAW_FRAMES = 160;
     const scene::Scene scene = hues();
     const image::Image emission = emissionOf(scene);
-    for (const Method method : {Method::RgbRestir, Method::RestirPt, Method::GroupedRestir}) {
+    Settings plainSettings = settings(Method::Pt);
+    plainSettings.seed = 99; // independent of the chains
+    Renderer traced = renderer(scene, plainSettings, RUNS);
+    const auto plain = measureLaw(traced, LAW_FRAMES, passes::resolvingTargets(Method::Pt), emission, {});
+    for (const auto& [method, color] : {std::pair(Method::RgbRestir, Color::Chosen),
+                                        {Method::RestirPt, Color::Chosen},
+                                        {Method::RestirPt, Color::Weighted},
+                                        {Method::GroupedRestir, Color::Chosen},
+                                        {Method::GroupedRestir, Color::Weighted}}) {
         Settings s = settings(method);
+        s.color = color;
         Renderer own = renderer(scene, s, RUNS);
         const std::vector<passes::ChainPoint> points = measureChain(own, FRAMES, {}, {});
-        s.temporal = false;
-        s.seed = 99; // independent of the chains
-        own.apply(s);
+        s.seed = plainSettings.seed;
+        own.apply(passes::lawSettings(s));
         const auto law = measureLaw(own, LAW_FRAMES, passes::resolvingTargets(method), emission, {});
         ASSERT_TRUE(law);
         ASSERT_EQ(points.size(), 7u);
         for (const passes::ChainPoint& point : points) {
             const statistics::Estimate measured = statistics::combine(std::span(&point.autocovariance, 1));
-            const statistics::BatchValue prediction = passes::predictedAutocovariance(*law, point.frame);
+            const passes::FrameLaw& single = color == Color::Weighted && point.frame == 2 ? *plain : *law;
+            const statistics::BatchValue prediction = passes::predictedAutocovariance(single, color, point.frame);
             const statistics::Estimate predicted = statistics::combine(std::span(&prediction, 1));
             const statistics::Difference difference = statistics::compare(measured, predicted);
-            EXPECT_GT(difference.p, 1e-4) << "method " << int(method) << ", M = " << point.frame << ": "
-                                          << measured.mean << " against " << predicted.mean;
+            EXPECT_GT(difference.p, 1e-4)
+                << "method " << int(method) << ", color " << int(color) << ", M = " << point.frame << ": "
+                << measured.mean << " against " << predicted.mean;
             // Else the agreement says little.
             EXPECT_LT(difference.standardError, 0.06 * predicted.mean) << int(method) << " " << point.frame;
         }

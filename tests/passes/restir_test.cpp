@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "passes/camera_path.h"
+#include "passes/estimator.h"
 #include "passes/renderer.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/test_scenes.h"
@@ -18,6 +19,7 @@
 namespace
 {
 
+using passes::Color;
 using passes::Method;
 using passes::Renderer;
 using passes::Settings;
@@ -164,6 +166,93 @@ TEST_F(RestirTest, LuminanceIsTheRunningMeanOfThePathTracersLuminance)
         otherChannels += std::abs(picture[p].r - mean.r) > 0.01 * mean.r;
     }
     EXPECT_GT(otherChannels, picture.size() / 10); // else there was nothing to prove
+}
+
+// Reading color otherwise changes what is shown, and no reservoir: frames leave the same state behind, to the bit. And
+// since the weights are those that the sums add up, it changes no pixel's luminance (grouped reservoirs: neither r + g
+// nor b).
+TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
+{
+    const scene::Scene scene = sceneNamed("ManyLamps");
+    for (const Method method : {Method::RestirPt, Method::GroupedRestir})
+        for (const bool temporal : {true, false})
+            for (const uint32_t spatial : {0u, 2u}) {
+                Settings settings = resting(method);
+                settings.shift = Shift::Hybrid;
+                settings.temporal = temporal;
+                settings.spatial = spatial;
+                settings.spatialRadius = 4;
+                Pixels pictures[2];
+                std::vector<std::byte> histories[2], paths[2];
+                const passes::CameraAt cameraAt = passes::cameraOrbit(scene.cameras.at(0), 2);
+                for (const Color color : {Color::Chosen, Color::Weighted}) {
+                    settings.color = color;
+                    Renderer renderer(device(), scene, settings);
+                    for (uint64_t frame = 0; frame < 4; ++frame) {
+                        renderer.setCamera(cameraAt(frame));
+                        renderer.renderFrame();
+                    }
+                    pictures[size_t(color)] = renderer.readFrame().pixels;
+                    for (auto& [name, bytes] : renderer.save().buffers) {
+                        if (name == "History") histories[size_t(color)] = std::move(bytes);
+                        if (name == "HistoryPaths") paths[size_t(color)] = std::move(bytes);
+                    }
+                    for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
+                }
+                ASSERT_FALSE(histories[0].empty());
+                EXPECT_TRUE(histories[0] == histories[1] && paths[0] == paths[1]);
+                size_t otherColors = 0;
+                for (size_t p = 0; p < pictures[0].size(); ++p) {
+                    const glm::dvec3 chosen(pictures[0][p]), weighted(pictures[1][p]);
+                    for (const glm::vec3& target : passes::estimatorOf(method).target) {
+                        const double expected = glm::dot(glm::dvec3(target), chosen);
+                        EXPECT_NEAR(glm::dot(glm::dvec3(target), weighted), expected, 1e-5 * expected) << p;
+                    }
+                    otherColors += std::abs(chosen.r - weighted.r) > 0.01 * chosen.r;
+                }
+                EXPECT_GT(otherColors, pictures[0].size() / 20) << temporal << spatial; // else nothing was proved
+            }
+}
+
+// Without reuse the last merge is that of a new tree's paths: what the path tracer adds.
+TEST_F(RestirTest, WeightedColorWithoutReuseIsThePathTracer)
+{
+    const scene::Scene scene = sceneNamed("Glossy");
+    const std::vector<Pixels> traced = pathTraced(scene, 2);
+    for (const Method method : {Method::RestirPt, Method::GroupedRestir}) {
+        Settings settings = resting(method);
+        settings.temporal = false;
+        settings.color = Color::Weighted;
+        Renderer renderer(device(), scene, settings);
+        renderer.renderFrame();
+        renderer.renderFrame();
+        const Pixels picture = renderer.readFrame().pixels;
+        for (size_t p = 0; p < picture.size(); ++p)
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], traced[1][p][c], 4e-6 * traced[1][p][c]) << p;
+    }
+}
+
+// At rest, frame M shows the new sample with 1 / M and what chosen color showed before with the rest. (Less what is
+// seen directly, which is in all of them.)
+TEST_F(RestirTest, WeightedColorAtRestIsTheMeanOfTheNewSampleAndTheOldPicture)
+{
+    constexpr int FRAMES = 7;
+    const scene::Scene scene = sceneNamed("SunnySky");
+    const auto lastOf = [&](Color color, bool temporal, int frames) {
+        Settings settings = resting(Method::RestirPt);
+        settings.color = color;
+        settings.temporal = temporal;
+        Renderer renderer(device(), scene, settings);
+        for (int i = 0; i < frames; ++i) renderer.renderFrame();
+        return renderer.readFrame().pixels;
+    };
+    const Pixels before = lastOf(Color::Chosen, true, FRAMES - 1), single = lastOf(Color::Chosen, false, FRAMES),
+                 weighted = lastOf(Color::Weighted, true, FRAMES);
+    for (size_t p = 0; p < weighted.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const double expected = single[p][c] / double(FRAMES) + before[p][c] * (1 - 1.0 / FRAMES);
+            EXPECT_NEAR(weighted[p][c], expected, 2e-6 * expected) << p;
+        }
 }
 
 // Beyond M_c the mean becomes an exponential one: S_n = S_(n-1) + (F_n - S_(n-1)) / (M_c + 1).

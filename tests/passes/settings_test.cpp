@@ -26,6 +26,7 @@ Settings unusual()
     s.temporal = false;
     s.spatial = 8;
     s.spatialRadius = 0.1f + 31;
+    s.color = passes::Color::Chosen;
     s.maxBounces = 0;
     s.pixelFilter = passes::PixelFilter::Box;
     s.width = 17;

@@ -1,6 +1,7 @@
 #include "tests/support/restir_cases.h"
 
 #include "engine/base/check.h"
+#include "passes/estimator.h"
 #include "tests/support/gpu_pictures.h"
 #include "tests/support/test_scenes.h"
 
@@ -21,6 +22,7 @@ std::vector<RestirCase> restirMatrix()
 {
     using enum passes::Method;
     using enum passes::Shift;
+    using enum passes::Color;
     using enum Reuse;
     std::vector<RestirCase> cases;
     for (const passes::Method method : {RestirPt, RgbRestir, GroupedRestir})
@@ -28,7 +30,10 @@ std::vector<RestirCase> restirMatrix()
             for (const Reuse reuse : {Temporal, Spatial, Both})
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 4u), {8u, 10u}, {64u, 6u}, {4096u, 9u}})
-                        cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames});
+                        for (const passes::Color color : {Chosen, Weighted}) {
+                            if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
+                            cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color});
+                        }
     return cases;
 }
 
@@ -40,7 +45,8 @@ std::string RestirCase::name() const
     constexpr const char* SHIFTS[] = {"Replay", "Reconnection", "Hybrid"};
     constexpr const char* REUSES[] = {"Temporal", "Spatial", "Both"};
     return std::string(scene) + METHODS[size_t(method)] + SHIFTS[size_t(shift)] + REUSES[size_t(reuse)] +
-           (moves ? "Moving" : "Resting") + std::to_string(maxConfidence);
+           (moves ? "Moving" : "Resting") + std::to_string(maxConfidence) +
+           (color == passes::Color::Chosen ? "Chosen" : "");
 }
 
 void PrintTo(const RestirCase& c, std::ostream* os)
@@ -74,6 +80,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
         settings.spatial = reuse == Reuse::Temporal ? 0 : 3;
         settings.spatialRadius = 5;
         settings.maxConfidence = maxConfidence;
+        settings.color = color;
         settings.frames = frames;
         settings.average = false;
         return picturesAgree(renderRuns(device, world, settings, runs, cameraAt), expected);
@@ -87,16 +94,17 @@ std::vector<RestirCase> restirCases()
     if (std::getenv("TRICHROME_TEST_MATRIX") != nullptr) return restirMatrix();
     using enum passes::Method;
     using enum passes::Shift;
+    using enum passes::Color;
     using enum Reuse;
     return {
         {"Lambert", RgbRestir, Replay, Temporal, true, 8},
         {"Lambert", RgbRestir, Hybrid, Both, true, 64},
-        {"Lambert", RestirPt, Reconnection, Spatial, false, 8},
+        {"Lambert", RestirPt, Reconnection, Spatial, false, 8, 200, 5, Chosen},
         {"RoughMetal", RgbRestir, Reconnection, Both, true, 8},
         {"SmoothMetal", RgbRestir, Hybrid, Both, true, 64, 700},
         {"Mirror", RgbRestir, Hybrid, Both, true, 8},
         {"Glossy", RestirPt, Hybrid, Both, true, 8},
-        {"Glossy", GroupedRestir, Hybrid, Both, true, 8},
+        {"Glossy", GroupedRestir, Hybrid, Both, true, 8, 200, 5, Chosen},
         {"ClearGlassBall", RgbRestir, Hybrid, Both, true, 8},
         {"FrostedGlass", RgbRestir, Hybrid, Both, true, 8, 800},
         {"FrostedPane", RgbRestir, Reconnection, Both, true, 8},
@@ -112,7 +120,7 @@ std::vector<RestirCase> restirCases()
         {"TwoSidedLamp", RgbRestir, Hybrid, Both, true, 8},
         {"ManyLamps", RgbRestir, Hybrid, Both, true, 4096},
         {"Room", RgbRestir, Hybrid, Both, true, 64, 450},
-        {"Room", RestirPt, Replay, Both, true, 8, 450},
+        {"Room", RestirPt, Replay, Both, true, 8, 450, 5, Chosen},
         {"Room", GroupedRestir, Reconnection, Temporal, false, 8},
         {"Orthographic", RgbRestir, Hybrid, Both, true, 8},
     };

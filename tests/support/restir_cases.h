@@ -23,6 +23,7 @@ struct RestirCase {
     uint32_t maxConfidence;
     uint32_t runs = 200;
     uint32_t frames = 5;
+    passes::Color color = passes::Color::Weighted;
 
     std::string name() const;
     // The last frame, its mean over many runs, against the path tracer's picture from the same place.

@@ -115,7 +115,7 @@ std::string ToyCase::name() const
 }
 
 ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const passes::Estimator& estimator,
-                         passes::Shift shift, uint32_t runs)
+                         passes::Shift shift, uint32_t runs, passes::Color color)
     : device_(device), shaders_(shaders), estimator_(estimator), runs_(runs)
 {
     passes::checkUnbiased(estimator);
@@ -123,6 +123,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     passes::Variant variant;
     variant.RESERVOIR_COUNT = uint32_t(estimator.target.size());
     variant.SHIFT_MAP = uint32_t(shift);
+    variant.COLOR_READING = uint32_t(color);
     constants_ = passes::constants(variant);
 
     const uint64_t pixels = uint64_t{runs} * SIZE * SIZE, count = estimator.target.size();
@@ -137,6 +138,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     add("Neighbors", pixels * NEIGHBORS * sizeof(uint32_t));
     add("Shifted", pixels * NEIGHBORS * count * 16);
     add("Color", pixels * 16);
+    add("MergedColor", pixels * 16);
 }
 
 ToyRenderer::Stage& ToyRenderer::stage(const std::string& name, bool sameView)

@@ -32,7 +32,7 @@ class ToyRenderer
   public:
     // `shaders` is put before the stages' names. All `runs` share a dispatch; a multiple of shared::TOY_GROUP.
     ToyRenderer(gpu::Device& device, const std::string& shaders, const passes::Estimator& estimator,
-                passes::Shift shift, uint32_t runs);
+                passes::Shift shift, uint32_t runs, passes::Color color = passes::Color::Chosen);
 
     // The mean over each group of runs of the last frame, without what is seen directly. With `elides`, the stage for
     // resting cameras is used where nothing moves. A value that is not finite fails the test.

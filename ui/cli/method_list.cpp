@@ -48,6 +48,7 @@ void requireComparable(const passes::Settings& settings, const passes::Settings&
     own.temporal = settings.temporal;
     own.spatial = settings.spatial;
     own.spatialRadius = settings.spatialRadius;
+    own.color = settings.color;
     const auto a = passes::toText(own), b = passes::toText(settings);
     for (size_t i = 0; i < a.size(); ++i)
         if (a[i] != b[i])

@@ -41,6 +41,7 @@ passes::Settings protocol()
     settings.method = passes::Method::RgbRestir; // --methods decides
     settings.shift = passes::Shift::Replay;
     settings.spatial = 0;
+    settings.color = passes::Color::Chosen;
     settings.maxConfidence = 1024;
     settings.width = 64;
     settings.height = 36;
@@ -144,7 +145,7 @@ class Correlator
     std::optional<passes::FrameLaw> law(passes::Renderer& renderer, passes::Settings settings, uint32_t index,
                                         uint32_t frames, const passes::Tick& tick)
     {
-        settings.temporal = false;
+        settings = passes::lawSettings(settings);
         settings.seed = (settings.seed + index * NEXT_BATCH) ^ LAW_SEED;
         renderer.apply(settings);
         if (cameraAt_) renderer.setCamera(cameraAt_(0));

@@ -105,8 +105,11 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
         }
         for (const uint32_t frame : framesUpTo(method.settings.maxConfidence)) {
             CurvePoint point = pointAt(frame, batches, method.name);
-            if (!own.empty() && known)
-                point.law = laws(own, [&](const passes::FrameLaw& law) { return predictedAutocovariance(law, frame); });
+            const passes::Color color = method.settings.color;
+            const Batches& single = frame == 2 && color == passes::Color::Weighted ? plain : own;
+            if (!single.empty() && known)
+                point.law = laws(
+                    single, [&](const passes::FrameLaw& law) { return predictedAutocovariance(law, color, frame); });
             if (point.runs > 0 || point.law) curve.points.push_back(point);
         }
         correlation.curves.push_back(std::move(curve));

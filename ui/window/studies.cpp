@@ -77,9 +77,7 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
         passes::Settings settings = settingsOf(order, side);
         if (settings.method == passes::Method::Pt || (side == B && !order.rival)) continue;
         if (order.studies.correlation) add(settings);
-        settings.temporal = false;
-        settings.spatial = 0;
-        if (order.studies.correlation || order.studies.floor) add(settings);
+        if (order.studies.correlation || order.studies.floor) add(passes::lawSettings(settings));
     }
     if (order.studies.savings > 0) {
         for (const auto& [name, needed] : like.stagesFor(settingsOf(order, A), true))

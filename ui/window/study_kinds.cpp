@@ -111,8 +111,7 @@ class CorrelationStudy : public Study
         chainRenderer_ = siblingOf(subject, settings_, RUNS);
         if (!passes::lawHolds(settings_, false)) return;
         emission_ = emissionOf(subject, settings_);
-        lawSettings_ = settings_;
-        lawSettings_.temporal = false;
+        lawSettings_ = passes::lawSettings(settings_);
         if (passes::accumulates(settings_.method)) lawSettings_.method = passes::Method::Pt;
         lawRenderer_ = siblingOf(subject, lawSettings_, RUNS);
     }
@@ -178,10 +177,12 @@ class CorrelationStudy : public Study
         if (!laws_.empty()) {
             std::vector<statistics::BatchValue> predicted, plateaus;
             for (const passes::FrameLaw& law : laws_) {
-                predicted.push_back(passes::predictedAutocovariance(law, point.frame));
+                predicted.push_back(passes::predictedAutocovariance(law, settings_.color, point.frame));
                 plateaus.push_back(law.plateau);
             }
-            shown.predicted = statistics::combine(predicted).mean;
+            // The first frame of weighted color would take the path tracer's law.
+            if (point.frame > 2 || settings_.color == passes::Color::Chosen || passes::accumulates(settings_.method))
+                shown.predicted = statistics::combine(predicted).mean;
             curve_.plateau = statistics::combine(plateaus).mean;
         }
         const auto at = std::ranges::find(curve_.points, point.frame, &CorrelationCurve::Point::frame);
@@ -209,11 +210,9 @@ constexpr uint32_t FIRST_FLOOR = 4, MOST_FLOOR = 4096; // frames: when it is fir
 class FloorStudy : public Study
 {
   public:
-    explicit FloorStudy(const Subject& subject) : side_(subject.side), settings_(subject.settings)
+    explicit FloorStudy(const Subject& subject) : side_(subject.side), settings_(passes::lawSettings(subject.settings))
     {
         if (passes::accumulates(settings_.method)) return; // there is none
-        settings_.temporal = false;
-        settings_.spatial = 0;
         settings_.seed = ~settings_.seed;
         meter_.emplace(1, passes::resolvingTargets(settings_.method), emissionOf(subject, settings_));
         renderer_ = siblingOf(subject, settings_);

@@ -71,6 +71,10 @@ void edit(Places& places, const passes::Knob& knob, passes::Shift& value)
 {
     edit(places, knob, value, {"replay", "reconnection", "hybrid"});
 }
+void edit(Places& places, const passes::Knob& knob, passes::Color& value)
+{
+    edit(places, knob, value, {"chosen", "weighted"});
+}
 void edit(Places& places, const passes::Knob& knob, passes::PixelFilter& value)
 {
     edit(places, knob, value, {"center", "box"});

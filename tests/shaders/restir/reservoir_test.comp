@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 // Two rows a thread: S_n, S_h, rho, historyRho | c_n, c_h, u, carry of the history.
 layout(set = SET_PASS, binding = 0, std430) readonly buffer Merges { vec4 merges[]; };
-layout(set = SET_PASS, binding = 1, std430) writeonly buffer Merged { vec4 merged[]; }; // S', carry', 1 when history is chosen
+layout(set = SET_PASS, binding = 1, std430) writeonly buffer Merged { vec4 merged[]; }; // S', carry', 1 when history is chosen, w_n
 
 void main()
 {
@@ -19,6 +19,7 @@ void main()
     Reservoir history = EMPTY;
     history.weightSum = a.y;
     history.carry = b.w;
-    bool chosen = mergeHistory(here, history, a.z, a.w, b.x, b.y, b.z);
-    merged[i] = vec4(here.weightSum, here.carry, chosen ? 1.0 : 0.0, 0.0);
+    float weight;
+    bool chosen = mergeHistory(here, history, a.z, a.w, b.x, b.y, b.z, weight);
+    merged[i] = vec4(here.weightSum, here.carry, chosen ? 1.0 : 0.0, weight);
 }

@@ -60,6 +60,7 @@ TEST_F(ReservoirTest, MergesAsInDoublePrecision)
     for (size_t i = 0; i < merges.size(); ++i) {
         const double expected = ownWeight(merges[i]) + historyWeight(merges[i]);
         ASSERT_NEAR(double(merged[i].x) + merged[i].y, expected, 3e-6 * expected) << i;
+        ASSERT_NEAR(merged[i].w, ownWeight(merges[i]), 3e-6 * ownWeight(merges[i])) << i;
         const double threshold = ownWeight(merges[i]) / expected; // of keeping the own sample
         if (std::abs(merges[i].u - threshold) < 1e-5) continue;
         EXPECT_EQ(merged[i].z, merges[i].u < threshold ? 0.0f : 1.0f) << i;
@@ -74,6 +75,40 @@ TEST_F(ReservoirTest, CarriesWhatRoundingTook)
     const double expected = 1 + (double(1.3f) - 1) / (double(1u << 20) + 1);
     EXPECT_NEAR(double(merged.x) + merged.y, expected, 1e-12);
     EXPECT_GT(std::abs(double(merged.x) - expected), 1e-9); // the sum alone does not hold it
+}
+
+// After 2^20 frames the sum is their mean, and the new sample's part, by which weighted color shows it, is what it
+// should be.
+TEST_F(ReservoirTest, DoesNotDriftInAMillionFrames)
+{
+    struct Chain {
+        uint32_t generator, frames = 0;
+        float weightSum = 0, carry = 0, weight = 0, single = 0;
+        uint32_t padding[2] = {};
+    };
+    constexpr uint32_t FRAMES = 1u << 20;
+    std::vector<Chain> chains;
+    for (uint32_t i = 0; i < 8; ++i) chains.push_back({.generator = 0x9e3779b9u * i});
+    const gpu::Buffer buffer = upload("Chains", chains);
+    for (uint32_t frame = 0; frame < FRAMES; frame += 32768)
+        run({.shader = TEST_SPIRV_DIR "/drift_test",
+             .buffers = {{"Chains", &buffer}},
+             .threads = {uint32_t(chains.size())}});
+    const std::vector<Chain> ends = download<Chain>(buffer);
+    for (size_t i = 0; i < chains.size(); ++i) {
+        ASSERT_EQ(ends[i].frames, FRAMES);
+        uint32_t generator = chains[i].generator;
+        double sum = 0, last = 0;
+        for (uint32_t frame = 0; frame < FRAMES; ++frame) {
+            generator = generator * 1664525u + 1013904223u;
+            last = std::ldexp(double(generator >> 8), -23);
+            sum += last;
+        }
+        const double mean = sum / FRAMES;
+        EXPECT_EQ(double(ends[i].single), last);
+        EXPECT_NEAR(double(ends[i].weightSum) + ends[i].carry, mean, 2e-7 * mean) << i;
+        EXPECT_NEAR(ends[i].weight, last / FRAMES, 1e-6 * last / FRAMES) << i;
+    }
 }
 
 TEST_F(ReservoirTest, StaysFiniteAtTheEnds)

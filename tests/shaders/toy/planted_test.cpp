@@ -22,6 +22,8 @@ struct ToyError {
     Shift shift;
     ToyCase test;
     uint32_t runs = 256;
+    passes::Method method = passes::Method::RgbRestir;
+    passes::Color color = passes::Color::Chosen;
 };
 void PrintTo(const ToyError& error, std::ostream* os)
 {
@@ -97,6 +99,79 @@ const ToyError ERRORS[] = {
      "loadReservoirsPath(pixel, c)",
      Shift::Hybrid,
      {Both, true, 64}},
+    // What weighted color alone shows: reservoirs stay right.
+    {"ColorOfOwnWeightTimes1_02",
+     "temporal.comp",
+     "color += weight * colorOf",
+     "color += 1.02 * weight * colorOf",
+     Shift::Replay,
+     {Temporal, true, 1},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorBySwappedTemporalWeights",
+     "temporal.comp",
+     "color += weight * colorOf(c, r[c].f) + historyWeight * colorOf(c, fHere[c]);",
+     "color += historyWeight * colorOf(c, r[c].f) + weight * colorOf(c, fHere[c]);",
+     Shift::Replay,
+     {Temporal, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorFromTheHistorysDomain",
+     "temporal.comp",
+     "historyWeight * colorOf(c, fHere[c])",
+     "historyWeight * colorOf(c, old[c].f)",
+     Shift::Replay,
+     {Temporal, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorFromTheNeighborsDomain",
+     "spatial_gather.comp",
+     "weighted += weight * colorOf(c, fHere);",
+     "weighted += weight * colorOf(c, other.f);",
+     Shift::Hybrid,
+     {Spatial, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorByTheOwnMisWeight",
+     "spatial_gather.comp",
+     "weighted += weight * colorOf(c, fHere);",
+     "weighted += taken * (other.weightSum + other.carry) * colorOf(c, fHere);",
+     Shift::Hybrid,
+     {Spatial, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorOfTheOwnSampleWhole",
+     "spatial_gather.comp",
+     "(r[c].weightSum * kept[c] + r[c].carry)",
+     "(r[c].weightSum + r[c].carry)",
+     Shift::Hybrid,
+     {Spatial, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorOfAKeptShare2PercentTooLarge",
+     "spatial_gather.comp",
+     "(r[c].weightSum * kept[c] + r[c].carry)",
+     "(r[c].weightSum * (kept[c] + 0.04 * (1.0 - kept[c])) + r[c].carry)",
+     Shift::Hybrid,
+     {Spatial, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
+    {"ColorOfTheFirstLeafTwice",
+     "canonical.comp",
+     "allPaths += f;",
+     "allPaths += canonical[0].weightSum > 0.0 ? f : 2.0 * f;",
+     Shift::Hybrid,
+     {Temporal, true, 8},
+     1024,
+     passes::Method::RestirPt,
+     passes::Color::Weighted},
 };
 
 class ToyPlantedErrors : public GpuTest, public testing::WithParamInterface<ToyError>
@@ -113,9 +188,10 @@ TEST_P(ToyPlantedErrors, AreFound)
     ASSERT_NO_FATAL_FAILURE(shaders.plant(error.file, error.right, error.wrong));
 
     gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
-    const passes::Estimator& rgb = passes::estimatorOf(passes::Method::RgbRestir);
+    const passes::Estimator& estimator = passes::estimatorOf(error.method);
     // No margin: what is not known well must not count as found.
-    const TileVerdict verdict = ToyRenderer(planted, "", rgb, error.shift, error.runs).verdict(error.test, 1e-5, 1.0);
+    const TileVerdict verdict =
+        ToyRenderer(planted, "", estimator, error.shift, error.runs, error.color).verdict(error.test, 1e-5, 1.0);
     EXPECT_FALSE(verdict.passes) << verdict.summary;
     std::printf("%s: %s\n", error.name, verdict.summary.c_str());
 }

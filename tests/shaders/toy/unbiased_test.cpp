@@ -14,6 +14,7 @@ namespace support
 namespace
 {
 
+using passes::Color;
 using passes::Shift;
 
 constexpr Shift SHIFTS[] = {Shift::Replay, Shift::Reconnection, Shift::Hybrid};
@@ -32,11 +33,12 @@ std::vector<passes::Estimator> allEstimators()
 struct Row {
     passes::Estimator estimator;
     Shift shift;
+    Color color;
 
     std::string name() const
     {
         constexpr const char* NAMES[] = {"Replay", "Reconnection", "Hybrid"};
-        std::string name = estimator.name + NAMES[size_t(shift)];
+        std::string name = estimator.name + NAMES[size_t(shift)] + (color == Color::Weighted ? "Weighted" : "");
         std::erase(name, '-');
         return name;
     }
@@ -51,14 +53,18 @@ bool asksAll()
     return std::getenv("TRICHROME_TEST_MATRIX") != nullptr;
 }
 
-// Without the matrix: every estimator with hybrid shifts, which replay and reconnect, and every shift with one of them.
+// Without the matrix: every estimator with hybrid shifts, which replay and reconnect, and every shift with one of them;
+// and every way of reading color that shows another picture.
 std::vector<Row> rows()
 {
     std::vector<Row> list;
     for (const passes::Estimator& estimator : allEstimators())
         for (const Shift shift : SHIFTS)
-            if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
-                list.push_back({estimator, shift});
+            for (const Color color : {Color::Chosen, Color::Weighted}) {
+                if (color != Color::Chosen && oneHot(estimator)) continue;
+                if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
+                    list.push_back({estimator, shift, color});
+            }
     return list;
 }
 
@@ -97,7 +103,8 @@ TEST_P(ToyIntegrals, AreTheMeans)
 {
     const Plan asked = plan(GetParam().estimator);
     const double level = 1e-3 / double(2 * rows().size() * asked.cases.size()); // two tests each, 1e-3 for all of them
-    ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs);
+    ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs,
+                         GetParam().color);
     for (const ToyCase& c : asked.cases) {
         const TileVerdict verdict = renderer.verdict(c, level, asked.margin);
         EXPECT_TRUE(verdict.passes) << c.name();
@@ -123,6 +130,26 @@ TEST_F(ToyWorld, NeedsNoShiftsAtRest)
                 for (int c = 0; c < 3; ++c)
                     different += !(std::abs(with[run].pixels[i][c] - without[run].pixels[i][c]) <= 2e-6f);
         EXPECT_LE(different, compared / 1000);
+    }
+}
+
+// With targets of one channel each, all samples of a reservoir have one color: both ways of reading it show one
+// picture, for which the product compiles the cheaper one. With luminance they do not.
+TEST_F(ToyWorld, OneHotTargetsShowOnePicture)
+{
+    for (const passes::Method method : {passes::Method::RestirPt, passes::Method::RgbRestir}) {
+        const passes::Estimator& estimator = passes::estimatorOf(method);
+        ToyRenderer chosen(device(), TEST_SPIRV_DIR "/", estimator, Shift::Hybrid, 8);
+        ToyRenderer weighted(device(), TEST_SPIRV_DIR "/", estimator, Shift::Hybrid, 8, Color::Weighted);
+        for (const Reuse reuse : {Reuse::Temporal, Reuse::Spatial, Reuse::Both}) {
+            const ToyCase c = {.reuse = reuse, .moves = true, .maxConfidence = 8};
+            const std::vector<image::Image> a = chosen.render(c), b = weighted.render(c);
+            size_t different = 0;
+            for (size_t i = 0; i < a[0].pixels.size(); ++i)
+                for (int channel = 0; channel < 3; ++channel)
+                    different += !(std::abs(a[0].pixels[i][channel] - b[0].pixels[i][channel]) <= 4e-6f);
+            EXPECT_EQ(different == 0, oneHot(estimator)) << estimator.name << ", " << c.name() << ": " << different;
+        }
     }
 }
 

@@ -27,8 +27,9 @@ TEST(MethodList, AppliesEachEntryOnTopOfTheCommonSettings)
     passes::Settings base;
     base.maxConfidence = 7;
     base.width = 11;
-    const auto methods = ui::readMethods("pt,restir-pt:replay,rgb-restir:spatial=0:max-confidence=64", base);
-    ASSERT_EQ(methods.size(), 3u);
+    const auto methods =
+        ui::readMethods("pt,restir-pt:replay,rgb-restir:spatial=0:max-confidence=64,restir-pt:color=chosen", base);
+    ASSERT_EQ(methods.size(), 4u);
     EXPECT_EQ(methods[0].name, "pt");
     EXPECT_EQ(methods[0].settings, base);
     EXPECT_EQ(methods[1].settings.method, passes::Method::RestirPt);
@@ -39,6 +40,8 @@ TEST(MethodList, AppliesEachEntryOnTopOfTheCommonSettings)
     EXPECT_EQ(methods[2].settings.spatial, 0u);
     EXPECT_EQ(methods[2].settings.maxConfidence, 64u);
     EXPECT_EQ(methods[2].settings.width, 11u);
+    EXPECT_EQ(methods[2].settings.color, base.color);
+    EXPECT_EQ(methods[3].settings.color, passes::Color::Chosen);
 }
 
 TEST(MethodList, TakesPresets)

@@ -26,12 +26,13 @@ passes::FrameLaw law(double variance, double plateau)
             .mean = {glm::dvec3(1), glm::dvec3(1.0 / 7)}};
 }
 
-std::vector<NamedMethod> methods(uint32_t maxConfidence)
+std::vector<NamedMethod> methods(uint32_t maxConfidence, passes::Color color = passes::Color::Chosen)
 {
     passes::Settings settings;
     settings.temporal = true;
     settings.spatial = 0;
     settings.maxConfidence = maxConfidence;
+    settings.color = color;
     return readMethods("restir-pt,rgb-restir", settings);
 }
 
@@ -86,6 +87,20 @@ TEST(Correlation, MeasuresPredictsAndFindsTheCrossover)
     EXPECT_GT(cross->high, 80);
     EXPECT_NEAR(std::sqrt(cross->low * cross->high), 80, 1e-9);
     EXPECT_FALSE(crossover(correlation, correlation.curves[1])); // no plateau, no crossover
+}
+
+// Weighted color has the same plateau, comes to it later, and starts with whole trees: sigma^2 / 2, not V / 2.
+TEST(Correlation, PredictsWeightedColor)
+{
+    Correlation correlation{.scene = "s", .width = 2, .height = 1, .runs = 3};
+    evaluate(correlation, methods(1 << 20, passes::Color::Weighted), exact(0));
+    const std::vector<CurvePoint>& points = correlation.curves.at(0).points;
+    ASSERT_EQ(points.size(), 20u);
+    EXPECT_NEAR(points[0].law->mean, 8.0 / 2, 1e-12);
+    EXPECT_NEAR(points[1].law->mean, 10.0 / 4 + 0.1 * (2.0 / 4) * (1.0 / 3), 1e-12);
+    EXPECT_NEAR(points[2].law->mean, 10.0 / 8 + 0.1 * (6.0 / 8) * (5.0 / 7), 1e-12);
+    EXPECT_NEAR(points[19].law->mean, 0.1 + 9.6 / (1 << 20), 1e-9);
+    EXPECT_NEAR(correlation.curves[1].points[1].law->mean, 8.0 / 4, 1e-12); // reservoirs of their own: as ever
 }
 
 TEST(Correlation, NeitherOrderNorDoublesChangeABit)

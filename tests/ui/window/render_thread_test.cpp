@@ -132,7 +132,9 @@ TEST(RenderThread, StudiesAreMeasuredBesideThePictures)
     for (const ui::Side side : {ui::A, ui::B}) {
         ASSERT_EQ(curve(side)->points.size(), 3u); // M = 2, 4, 8
         for (const ui::CorrelationCurve::Point& point : curve(side)->points) {
-            ASSERT_TRUE(point.predicted);
+            // Weighted color starts with whole trees, which luminance's own law does not know.
+            ASSERT_EQ(point.predicted.has_value(), side == ui::B || point.frame > 2);
+            if (!point.predicted) continue;
             const double error = std::sqrt(point.measured.varianceOfMean);
             EXPECT_NEAR(point.measured.mean, *point.predicted, 5 * error + 0.02 * *point.predicted) << point.frame;
             EXPECT_LT(error, 0.1 * *point.predicted);
