@@ -160,10 +160,11 @@ std::vector<WorldLight> readLights(const Document& document, const NodeTree& tre
                 clamped(color * source.intensity, 0, MAX_RADIANCE, "the intensity of a light", warnings));
         }
         if (light.kind == LightKind::Spot) {
-            constexpr double NARROWEST = 1e-3, SMALLEST_EDGE = 1e-4; // radians; the falloff divides by the edge's width
+            // Radians, of which directions in float32 resolve 1e-7. The falloff divides by the edge's width.
+            constexpr double NARROWEST = 1e-5, WIDEST_INNER = 1 - 1e-4;
             const double outer = clamped(source.spot.outerConeAngle, NARROWEST, std::numbers::pi / 2,
                                          "the outer cone of a spot light", warnings);
-            const double inner = clamped(source.spot.innerConeAngle, 0, outer - SMALLEST_EDGE,
+            const double inner = clamped(source.spot.innerConeAngle, 0, outer * WIDEST_INNER,
                                          "the inner cone of a spot light", warnings);
             light.outerConeAngle = static_cast<float>(outer);
             light.innerConeAngle = static_cast<float>(inner);

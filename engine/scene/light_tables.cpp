@@ -15,6 +15,12 @@ namespace
 
 using std::numbers::pi;
 
+// cos a - cos b, as a product: the difference has no digits left for small angles.
+double cosineDifference(double a, double b)
+{
+    return 2 * std::sin((a + b) / 2) * std::sin((b - a) / 2);
+}
+
 double largest(const glm::dvec3& v)
 {
     return std::max(std::max(v.x, v.y), v.z);
@@ -95,7 +101,7 @@ double punctualPower(const PunctualLight& light, const glm::dvec3& intensity, do
 {
     switch (light.kind) {
     case LightKind::Point: return 4 * pi * largest(intensity);
-    case LightKind::Spot: return 2 * pi * (1 - std::cos(double(light.outerConeAngle))) * largest(intensity);
+    case LightKind::Spot: return 2 * pi * cosineDifference(0, double(light.outerConeAngle)) * largest(intensity);
     case LightKind::Directional: return pi * radius * radius * largest(intensity);
     }
     return 0;
@@ -107,11 +113,10 @@ void addPunctual(const Scene& scene, double lengthScale, double radius, LightTab
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const PunctualLight& light = scene.lights[i];
         const glm::dvec3 intensity = scaledIntensity(light, lengthScale) * tables.radianceScale;
-        const double cosOuter = std::cos(double(light.outerConeAngle)),
-                     cosInner = std::cos(double(light.innerConeAngle));
+        const double inner = double(light.innerConeAngle), outer = double(light.outerConeAngle);
         const bool spot = light.kind == LightKind::Spot;
-        tables.punctual.push_back(row(glm::dvec3(light.position) * lengthScale, cosOuter));
-        tables.punctual.push_back(row(intensity, spot ? 1 / (cosInner - cosOuter) : 0));
+        tables.punctual.push_back(row(glm::dvec3(light.position) * lengthScale, cosineDifference(0, outer)));
+        tables.punctual.push_back(row(intensity, spot ? 1 / cosineDifference(inner, outer) : 0));
         tables.punctual.push_back(row(glm::dvec3(light.direction), 0));
         tables.counts.points += light.kind == LightKind::Point;
         tables.counts.spots += spot;
@@ -131,7 +136,7 @@ double addEnvironment(const Environment& environment, double radius, LightTables
     double total = 0;
     for (uint32_t y = 0; y < environment.height; ++y)
         solidAngle[y] = 2 * pi / environment.width *
-                        (std::cos(pi * y / environment.height) - std::cos(pi * (y + 1.0) / environment.height));
+                        cosineDifference(pi * y / environment.height, pi * (y + 1.0) / environment.height);
     for (size_t i = 0; i < count; ++i) {
         power[i] =
             largest(glm::dvec3(environment.radiance[i]) * tables.radianceScale) * solidAngle[i / environment.width];

@@ -26,10 +26,9 @@ float ggxVisible(float co, vec3 h, float a) { return 2.0 * ggxDistribution(h, a)
 vec3 sampleVisibleNormal(vec3 wo, float a, vec2 u)
 {
     vec3 stretched = normalize(vec3(a * wo.xy, wo.z));
-    float phi = 2.0 * PI * u.x;
     float z = fma(1.0 - u.y, 1.0 + stretched.z, -stretched.z);
     float r = sqrt(max(1.0 - z * z, 0.0));
-    vec3 h = vec3(r * cos(phi), r * sin(phi), z) + stretched;
+    vec3 h = vec3(r * unitCircle(u.x), z) + stretched;
     return normalize(vec3(a * h.xy, max(h.z, 0.0)));
 }
 

@@ -36,4 +36,16 @@ float unitFloat(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8; }
 // they are one step below it.)
 float decisionFloat(uint bits) { return min(float(bits) * 2.3283064365386963e-10, 0.99999994); }
 
+// An index below `count`, and what is left over, uniform in [0, 1]: whole part and fraction of count times a number in [0, 1) of
+// 64 bits. With 32 the indices of a million had probabilities that differ by 2e-4, and those of 2^25 by 0.8%.
+uint pick(uvec2 bits, uint count, out float rest)
+{
+    uint whole, fraction, carried, low, carry;
+    umulExtended(bits.x, count, whole, fraction);
+    umulExtended(bits.y, count, carried, low);
+    fraction = uaddCarry(fraction, carried, carry);
+    rest = float(fraction) * 2.3283064365386963e-10 + float(low) * 5.421010862427522e-20;
+    return whole + carry;
+}
+
 #endif

@@ -88,17 +88,16 @@ void emitByLight(Vertex x, PathSeed seed)
     uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);
     LightSample light = sampleLight(random, x.s);
     float scatterPdf;
-    vec3 f = evaluate(x.bsdf, light.direction * x.bsdf.frame, light.direction, scatterPdf);
+    vec3 carried = evaluate(x.bsdf, light.direction * x.bsdf.frame, light.direction, scatterPdf) * light.radiance;
+    if (x.throughput * carried == vec3(0.0)) return; // both densities may be 0 then
     float density = light.dirac ? light.pdf : light.pdf + scatterPdf;
-    Ending e = Ending(light.direction, light.radiance, f * light.radiance / density, light.pdf);
+    Ending e = Ending(light.direction, light.radiance, carried / density, light.pdf);
     if (light.dirac) {
         e.radiance /= light.pdf;
         e.lightPdf = -1.0;
     }
-    vec3 contribution = x.throughput * e.weighted;
-    if (contribution == vec3(0.0)) return;
     ++shadowRays;
-    emitUnlessBlocked(makeLeaf(x.k, BY_LIGHT), contribution, e,
+    emitUnlessBlocked(makeLeaf(x.k, BY_LIGHT), x.throughput * e.weighted, e,
                       shadowRay(x.s, light.infinite, light.target, light.normal, light.offset, light.direction, random.w));
 }
 

@@ -56,7 +56,7 @@ SHARED_CONST uint LIGHT_TRIANGLE = 0u;
 SHARED_CONST uint LIGHT_PUNCTUAL = 1u; // point or spot
 SHARED_CONST uint LIGHT_DIRECTIONAL = 2u;
 SHARED_CONST uint LIGHT_ENVIRONMENT = 3u;
-// Punctual light: position xyz, cos outer | intensity rgb, 1 / (cos inner - cos outer) or 0 for a point | direction
+// Punctual light: position xyz, 1 - cos outer | intensity rgb, 1 / (cos inner - cos outer) or 0 for a point | direction
 // xyz, 0
 SHARED_CONST uint PUNCTUAL_ROWS = 3u;
 // Environment texel: radiance rgb, probability / solid angle. Alias rows, two texels each: threshold, index.

@@ -31,6 +31,33 @@ TEST_F(ClosedForms, OfLightsHold)
     for (const ClosedForm& form : closedForms(32)) expectAgreement(form, 400, 0.01);
 }
 
+// From the zenith to the nadir, in skies of few rows and of many; all rows: tests/shaders/scene/sky_test.cpp.
+TEST_F(ClosedForms, OfSingleTexelsHold)
+{
+    for (const uint32_t rows : {64u, 1024u, 4096u})
+        for (const uint32_t row : {0u, rows * 2 / 5, rows / 2 - 3, rows - 1}) {
+            SCOPED_TRACE(testing::Message() << "row " << row << " of " << rows);
+            expectAgreement(texelOfASky(32, 4, rows, row), 256, 0.001);
+        }
+}
+
+// All methods find all of a small sun's energy.
+TEST_F(ClosedForms, OfASunHoldForEveryMethodAndShift)
+{
+    ClosedForm form = sunInASky(32);
+    expectAgreement(form, 400, 0.001);
+    for (const passes::Method method : {passes::Method::RestirPt, passes::Method::RgbRestir})
+        for (const passes::Shift shift : {passes::Shift::Replay, passes::Shift::Reconnection, passes::Shift::Hybrid}) {
+            form.settings.method = method;
+            form.settings.shift = shift;
+            form.settings.frames = 3;
+            const TileVerdict verdict =
+                picturesAgree(renderRuns(device(), form.scene, form.settings, 512), form.exactly(), 0.002);
+            EXPECT_TRUE(verdict.passes) << "method " << int(method) << ", shift " << int(shift) << ": "
+                                        << verdict.summary;
+        }
+}
+
 TEST_F(ClosedForms, FurnaceHoldsAtEveryDepth)
 {
     for (const uint32_t depth : {0u, 1u, 2u, 5u}) expectAgreement(furnace(96, depth), 40, 0.003);

@@ -72,6 +72,12 @@ ClosedForm sky(uint32_t size)
     return {"Sky", scene, square(size, 1), [](double, double) { return dvec3(FLOOR_ALBEDO) * dvec3(0.25, 0.25, 2); }};
 }
 
+// Irradiance of a floor that faces a texel of radiance 1: the integral of cos theta over it, as a product.
+double irradianceOfTexel(const scene::Environment& sky, uint32_t row)
+{
+    return PI / sky.width * std::sin((2.0 * row + 1) * PI / sky.height) * std::sin(PI / sky.height);
+}
+
 } // namespace
 
 const glm::vec3 FLOOR_ALBEDO = {0.5f, 0.4f, 0.3f};
@@ -109,6 +115,46 @@ ClosedForm rectangleLight(uint32_t size, uint32_t columns, uint32_t rows)
                     corner(1.5 - x, 0.75 - y) - corner(-x, 0.75 - y) - corner(1.5 - x, -y) + corner(-x, -y);
                 return dvec3(FLOOR_ALBEDO) * factor * dvec3(1, 2, 4);
             }};
+}
+
+ClosedForm texelOfASky(uint32_t size, uint32_t columns, uint32_t rows, uint32_t row)
+{
+    scene::Scene scene = floorFromAbove();
+    scene.environment = {columns, rows, std::vector<glm::vec3>(size_t{columns} * rows, glm::vec3(0))};
+    const double received = std::abs(irradianceOfTexel(scene.environment, row)); // at radiance 1
+    const auto radiance = glm::vec3(float(PI / received));
+    scene.environment.radiance[size_t{row} * columns + columns / 3] = radiance;
+    if (2 * row >= rows) {
+        scene::Camera& camera = scene.cameras[0];
+        camera.position = -camera.position;
+        camera.up = -camera.up;
+        camera.forward = -camera.forward;
+    }
+    const dvec3 leaving = dvec3(FLOOR_ALBEDO) / PI * received * dvec3(radiance);
+    return {"TexelOfASky", scene, square(size, 1), [=](double, double) { return leaving; }};
+}
+
+ClosedForm sunInASky(uint32_t size)
+{
+    constexpr uint32_t ROWS = 1024;
+    constexpr double STEP = PI / ROWS, RADIUS = 0.25 * PI / 180;
+    scene::Scene scene = floorFromAbove();
+    scene.environment = {2 * ROWS, ROWS, {}};
+    const auto towards = [](double polar, double azimuth) {
+        return dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+    };
+    const dvec3 sun = towards(50 * PI / 180, 2);
+    dvec3 received(0);
+    for (uint32_t row = 0; row < ROWS; ++row)
+        for (uint32_t column = 0; column < 2 * ROWS; ++column) {
+            const dvec3 middle = towards((row + 0.5) * STEP, (column + 0.5) * STEP);
+            const bool inside = glm::length(middle - sun) < 2 * std::sin(RADIUS / 2);
+            const glm::vec3 radiance = inside ? glm::vec3(8e4f, 7e4f, 6e4f) : glm::vec3(0.01f, 0.02f, 0.03f);
+            scene.environment.radiance.push_back(radiance);
+            if (row < ROWS / 2) received += dvec3(radiance) * irradianceOfTexel(scene.environment, row);
+        }
+    const dvec3 leaving = dvec3(FLOOR_ALBEDO) / PI * received;
+    return {"SunInASky", scene, square(size, 1), [=](double, double) { return leaving; }};
 }
 
 ClosedForm furnace(uint32_t size, uint32_t maxBounces)

@@ -32,6 +32,12 @@ extern const glm::vec3 FLOOR_ALBEDO;
 // That floor under a rectangle at height 1.25 that shines down, made of columns x rows equal parts.
 ClosedForm rectangleLight(uint32_t size, uint32_t columns = 1, uint32_t rows = 1);
 
+// That floor under a black sky with one bright texel in `row`; seen from below where that row is in the lower half.
+ClosedForm texelOfASky(uint32_t size, uint32_t columns, uint32_t rows, uint32_t row);
+
+// That floor under a pale sky of 2048 x 1024 texels with a sun of half a degree, 40 degrees above the horizon.
+ClosedForm sunInASky(uint32_t size);
+
 // The inside of a glowing sphere: L = Le (1 + rho + ... + rho^D).
 ClosedForm furnace(uint32_t size, uint32_t maxBounces);
 

@@ -14,7 +14,7 @@ constexpr double PI = std::numbers::pi;
 constexpr uint32_t SAMPLES = 1 << 20;
 constexpr int BINS = 32; // along each of two coordinates
 
-enum Routine : uint32_t { Cosine, Triangle, VisibleNormal };
+enum Routine : uint32_t { Cosine, Triangle, VisibleNormal, Circle, Pick };
 
 class Sampling : public GpuTest
 {
@@ -64,10 +64,31 @@ class Sampling : public GpuTest
 TEST_F(Sampling, HemisphereFollowsTheCosine)
 {
     const std::vector<glm::vec4> samples = sample(Cosine);
-    for (const glm::vec4& s : samples) ASSERT_NEAR(glm::length(glm::dvec3(s)), 1, 0x1p-10); // sin and cos: 2^-11
+    for (const glm::vec4& s : samples) ASSERT_NEAR(glm::length(glm::dvec3(s)), 1, 1e-6);
     EXPECT_GT(pOf(
                   samples, [](const glm::dvec3& w) { return glm::dvec2(w.z * w.z, turns(w)); }, uniform),
               1e-4);
+}
+
+// Far more exact than a device's own functions need be.
+TEST_F(Sampling, CirclesAndAnglesAreExact)
+{
+    for (const glm::vec4& s : sample(Circle)) {
+        const double angle = 2 * PI * double{s.z}, again = 2 * PI * double{s.w};
+        ASSERT_NEAR(double{s.x}, std::cos(angle), 2e-7) << s.z;
+        ASSERT_NEAR(double{s.y}, std::sin(angle), 2e-7) << s.z;
+        ASSERT_NEAR(std::remainder(again - angle, 2 * PI), 0, 7e-7) << s.z; // of both
+    }
+}
+
+// 2^32 numbers shared out among 3 * 2^30 indices: with no more than 32 bits every third index had half of them.
+TEST_F(Sampling, PicksAmongManyAreEven)
+{
+    std::vector<double> counts(3 * BINS, 0);
+    for (const glm::vec4& s : sample(Pick))
+        ++counts[size_t(int(s.x) * BINS + std::min(int(s.y * float(BINS)), BINS - 1))];
+    const std::vector<double> expected(counts.size(), double{SAMPLES} / double(counts.size()));
+    EXPECT_GT(statistics::chiSquaredTest(counts, expected).p, 1e-4);
 }
 
 TEST_F(Sampling, TriangleIsCoveredUniformly)

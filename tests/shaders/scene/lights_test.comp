@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Samples the scene's lights from a point, and asks for the density of each sample's direction.
+// Samples the scene's lights from points, and asks for the density of each sample's direction.
 #include "scene/bindings.glsl"
 layout(local_size_x = 64) in;
 
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Origin { vec4 origin; }; // scaled
+layout(set = SET_PASS, binding = 0, std430) readonly buffer Origins { vec4 origins[]; }; // scaled; samples take turns
 layout(set = SET_PASS, binding = 1, std430) writeonly buffer Results { vec4 results[]; };
 // Three rows a sample: radiance, density; direction, kind (0 surface, 1 Dirac, 2 environment);
 // density found again, radiance found again's red, triangle, -.
@@ -16,8 +16,9 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(results.length()) / 3u) return;
+    vec3 origin = origins[i % uint(origins.length())].xyz;
     Surface from; // in free space
-    from.position = origin.xyz;
+    from.position = origin;
     from.geometricNormal = vec3(0.0);
     from.offset = 0.0;
     LightSample light = sampleLight(pcg4d(uvec4(i, 5u, 6u, 7u)), from);
@@ -29,11 +30,11 @@ void main()
         density = environmentPdf(environment);
         radiance = environment.rgb;
     } else if (!light.dirac) {
-        Hit hit = closestHit(Ray(origin.xyz, light.direction, RAY_MAX), 0u);
+        Hit hit = closestHit(Ray(origin, light.direction, RAY_MAX), 0u);
         triangle = hit.triangle;
         if (hit.triangle != NO_HIT) {
             Surface s = loadSurface(hit.triangle, hit.barycentric, -light.direction);
-            density = lightPdf(s, origin.xyz, light.direction);
+            density = lightPdf(s, origin, light.direction);
             radiance = s.emission;
         }
     }
