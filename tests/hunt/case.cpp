@@ -99,7 +99,7 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
 
 } // namespace
 
-Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind) : seed_(seed), index_(index)
+Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind, bool onItself) : seed_(seed), index_(index)
 {
     Draw draw{seed, index};
     kind_ = drawKind(draw, onlyKind);
@@ -116,6 +116,9 @@ Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind) : s
     settings_.maxBounces = draw.chance(0.03) ? 0 : draw.from(1, shallow ? 3 : draw.chance(0.2) ? 8 : 4);
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
+    if (!onItself) return;
+    truth_ = Truth::PathTracer;
+    settings_.method = Pt;
 }
 
 Case Session::draw(uint64_t place) const

@@ -48,7 +48,8 @@ constexpr uint64_t SESSION_CASES = 32;
 class Session
 {
   public:
-    Session(uint64_t seed, uint64_t index, const std::string& onlyKind = "");
+    // With `onItself` the path tracer is compared with itself: whatever is found is a false alarm.
+    Session(uint64_t seed, uint64_t index, const std::string& onlyKind = "", bool onItself = false);
     Case draw(uint64_t place) const; // one of SESSION_CASES
     Kind kind() const { return kind_; }
 

@@ -114,8 +114,9 @@ void Palette::addTextures(Draw& draw, Material& m) const
         texture.wrapV = draw.of({scene::Wrap::Repeat, scene::Wrap::Clamp, scene::Wrap::Mirror});
         if (secondUv) texture.uvSet = draw.below(2);
         if (!transforms) return;
-        for (vec3* row : {&texture.row0, &texture.row1})
-            for (int i = 0; i < 3; ++i) (*row)[i] += float(draw.between(-0.4, 0.4));
+        const double angle = draw.between(-3, 3), s = draw.between(0.5, 2), t = draw.between(0.5, 2);
+        texture.row0 = {std::cos(angle) * s, std::sin(angle) * t, draw.between(-1, 1)};
+        texture.row1 = {-std::sin(angle) * s, std::cos(angle) * t, draw.between(-1, 1)};
     };
     use(baseColorTexture || m.alpha == scene::Alpha::Mask, m.baseColorTexture, 0);
     if (m.unlit) return;
@@ -172,7 +173,6 @@ void Palette::addTokens(Scene& scene, Draw& draw) const
     if (scene.positions.empty()) return;
     for (const Stuff one : stuff)
         scene.triangles.push_back({.vertices = {0, 0, 0}, .material = scene::addMaterial(scene, material(draw, one))});
-    if (has(Stuff::Glossy) || has(Stuff::RoughMetal) || has(Stuff::ThinRough) || has(Stuff::SolidRough)) return;
 }
 
 void Palette::complete(Scene& scene, Draw& draw) const

@@ -110,9 +110,10 @@ void Builder::lights(vec3 center, double size, bool extreme)
             if (draw.chance(0.5)) {
                 light.kind = scene::LightKind::Spot;
                 light.direction = glm::normalize(center + float(0.2 * size) * draw.direction() - light.position);
-                const double degrees = extreme ? draw.logBetween(exact() ? 0.05 : 0.01, 80) : draw.between(10, 70);
+                const double degrees = extreme ? draw.logBetween(0.06, 80) : draw.between(10, 70);
                 light.outerConeAngle = float(degrees * PI / 180);
-                light.innerConeAngle = light.outerConeAngle * (draw.chance(0.5) ? 0 : float(draw.between(0, 0.9)));
+                light.innerConeAngle =
+                    (light.outerConeAngle - 1e-4f) * (draw.chance(0.5) ? 0 : float(draw.between(0, 0.95)));
             }
             scene.lights.push_back(light);
         }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/error.h"
+
 namespace hunt
 {
 
@@ -62,9 +64,10 @@ Estimate estimateOf(const Region& region, const PixelEstimates& picture, size_t 
     return sum;
 }
 
-// How many samples a stage takes, as powers of 4 of the first one's.
-constexpr uint64_t GROWTH = 4;
+// How many times the first stage's samples the others take at most.
+constexpr uint64_t MOST[] = {1, 4, 16};
 constexpr uint64_t FIRST_FRAMES = 8192;     // of the path tracer, in 8x8 pixels
+constexpr double Z_WANTED = 9;              // standard errors: the last level takes 5.7 of them
 constexpr double ROUNDING = 5e-4;           // of the larger mean: both methods run the same float32 code on the device
 constexpr double REFERENCE_ROUNDING = 3e-3; // float64 against octahedral normals, half colors and float32
 
@@ -74,7 +77,8 @@ class Examination
     Examination(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c,
                 uint64_t seed, const Effort& effort)
         : case_(c), stand_(device, pipelines, c), seed_(seed), effort_(effort),
-          pathTracing_(c.settings.method == passes::Method::Pt), reference_(c.truth == Truth::Reference)
+          pathTracing_(c.settings.method == passes::Method::Pt && c.truth != Truth::PathTracer),
+          reference_(c.truth == Truth::Reference)
     {
         const double pixels = double(c.settings.width) * c.settings.height;
         runs_ = uint64_t(effort.factor * stand_.batch());
@@ -97,21 +101,21 @@ class Examination
 
   private:
     uint64_t seedOf(int stage, uint64_t side) const { return Draw::mix(seed_ + 2 * uint64_t(stage) + side); }
-    static uint64_t scale(int stage) { return stage == 0 ? 1 : stage == 1 ? GROWTH : GROWTH * GROWTH; }
+    uint64_t scale() const { return growth_; }
 
     void trial(int stage, const TakeRun& take)
     {
         if (pathTracing_)
-            stand_.frames(seedOf(stage, 0), frames_ * scale(stage), take);
+            stand_.frames(seedOf(stage, 0), frames_ * scale(), take);
         else
-            stand_.runs(seedOf(stage, 0), runs_ * scale(stage), take);
+            stand_.runs(seedOf(stage, 0), runs_ * scale(), take);
     }
 
     Finding black()
     {
         Finding finding{.fault = Fault::None, .stages = 1};
         uint64_t lit = 0, all = 0;
-        for (int stage = 0; stage < (lit > 0 ? 2 : 1); ++stage)
+        for (int stage = 0; stage < (lit > 0 ? 2 : 1); ++stage, growth_ = 4)
             trial(stage, [&](std::span<const glm::vec3> pixels) {
                 for (size_t i = 0; i < pixels.size(); ++i, ++all) {
                     if (pixels[i] == glm::vec3(0)) continue;
@@ -131,8 +135,16 @@ class Examination
                                                       reference_ ? stand_.undefinedPixels() : std::vector<bool>());
         if (regions.empty()) return {};
         Finding finding = first(regions);
-        for (int stage = 1; finding.fault == Fault::Different && stage < effort_.stages; ++stage)
+        for (int stage = 1; finding.fault == Fault::Different && stage < effort_.stages; ++stage) {
+            // What is obvious is shown again with few samples, and what few cannot decide with more.
+            const double z = std::max(std::abs(finding.tried - finding.truth) / finding.standardError, 1.0);
+            growth_ =
+                uint64_t(std::clamp(std::ceil(std::pow(Z_WANTED / z, 2) * double(growth_)), 1.0, double(MOST[stage])));
             finding = again(stage, regions[region_], LEVELS[stage]);
+            if (finding.fault == Fault::Different || growth_ == MOST[stage]) continue;
+            growth_ = MOST[stage];
+            finding = again(stage + 2, regions[region_], LEVELS[stage] / 2);
+        }
         return finding;
     }
 
@@ -202,11 +214,11 @@ class Examination
         trial(stage, addTo(tried));
         tried.finish(pathTracing_ ? 1 : stand_.chancesPerRun());
         if (reference_) {
-            const uint64_t samples = samples_ * scale(stage);
+            const uint64_t samples = samples_ * scale();
             truth.estimate = estimateOf(region, stand_.reference(seedOf(stage, 1), samples), channel_);
             truth.chances = double(samples);
         } else {
-            stand_.frames(seedOf(stage, 1), frames_ * scale(stage), addTo(truth));
+            stand_.frames(seedOf(stage, 1), frames_ * scale(), addTo(truth));
             truth.finish(1);
         }
         return report(stage, region, compare(tried, truth, level, margin()), tried.estimate, truth.estimate);
@@ -233,6 +245,7 @@ class Examination
     bool pathTracing_, reference_;
     uint64_t runs_ = 0, frames_ = 0, samples_ = 0; // of the first stage
     size_t region_ = 0, channel_ = 0;              // what it named
+    uint64_t growth_ = 1;                          // of the samples since then
 };
 
 } // namespace
@@ -251,7 +264,15 @@ std::string Finding::describe() const
 Finding examine(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c,
                 uint64_t seed, const Effort& effort)
 {
-    return Examination(device, pipelines, c, seed, effort).run();
+    Finding finding;
+    try {
+        finding = Examination(device, pipelines, c, seed, effort).run();
+    } catch (const Error& error) {
+        finding = {.fault = Fault::Failed, .where = error.what()};
+    }
+    const std::vector<std::string> messages = device.takeValidationMessages();
+    if (!messages.empty()) finding = {.fault = Fault::Validation, .where = messages.front()};
+    return finding;
 }
 
 } // namespace hunt

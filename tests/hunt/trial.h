@@ -11,9 +11,10 @@
 namespace hunt
 {
 
-enum class Fault { None, Undecided, Different, Light, NotFinite, NotRepeatable, Validation };
-constexpr const char* FAULT_NAMES[] = {"none",       "undecided",      "different",         "light where there is none",
-                                       "not finite", "not repeatable", "validation message"};
+enum class Fault { None, Undecided, Different, Light, NotFinite, NotRepeatable, Validation, Failed };
+constexpr const char* FAULT_NAMES[] = {
+    "none",       "undecided",      "different",          "light where there is none",
+    "not finite", "not repeatable", "validation message", "failed"};
 
 struct Finding {
     Fault fault = Fault::None;
@@ -31,7 +32,7 @@ struct Effort {
     double firstLevel = LEVELS[0];
 };
 
-// Throws Error as rendering does.
+// A device that says no is a finding, too.
 Finding examine(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c,
                 uint64_t seed, const Effort& effort = {});
 
