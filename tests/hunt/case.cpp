@@ -63,7 +63,7 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
     using enum Stuff;
     switch (kind) {
     case Kind::Panes:
-        take(0.7, {Blend});
+        take(0.85, {Blend});
         take(p.stuff.size() == 1 ? 1 : 0.3, {Mask, ThinClear, ThinRough, SolidClear, Mirror});
         take(0.3, {Glossy, RoughMetal});
         break;

@@ -44,7 +44,7 @@ struct Case {
 };
 
 // What the cases of a session share: all that is compiled into stages.
-constexpr uint64_t SESSION_CASES = 32;
+constexpr uint64_t SESSION_CASES = 12;
 class Session
 {
   public:

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <map>
 
@@ -104,7 +105,8 @@ class Hunt
         undecided_ += finding.fault == hunt::Fault::Undecided;
         found_ += finding.found();
         if (finding.found() || options_.verbose || options_.number >= 0 || finding.fault == hunt::Fault::Undecided)
-            say("{:.1f} min, {}\n    {}", secondsSince(start_) / 60, c.describe(), finding.describe());
+            say("{:.1f} min, {:.1f} min of processors: {}\n    {}", secondsSince(start_) / 60,
+                double(std::clock()) / CLOCKS_PER_SEC / 60, c.describe(), finding.describe());
         if (finding.found()) keep(c, finding);
     }
 
@@ -120,7 +122,8 @@ class Hunt
         uint64_t tries = 0;
         const auto fails = [&](const Case& smaller) {
             const hunt::Effort effort = {.factor = 2, .stages = 2, .firstLevel = 1e-5};
-            return hunt::examine(place.device, place.pipelines, smaller, seedOf(c) + ++tries, effort).found();
+            return hunt::examine(place.device, place.pipelines, smaller, seedOf(c) + ++tries, effort).fault ==
+                   finding.fault;
         };
         const Case small = hunt::shrink(c, fails, [&] { return secondsSince(start) > options_.shrinkSeconds; });
         const std::string stem =
