@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/error.h"
+
 namespace support
 {
 
@@ -21,15 +23,16 @@ PlantedShaders::~PlantedShaders()
     std::filesystem::remove_all(folder_, ignored);
 }
 
-void PlantedShaders::plant(const std::string& file, const std::string& right, const std::string& wrong)
+void PlantedShaders::plant(const PlantedError& error)
 {
     std::ostringstream stream;
-    stream << std::ifstream(folder_ / file).rdbuf();
+    stream << std::ifstream(folder_ / error.file).rdbuf();
     std::string text = stream.str();
+    const std::string right = error.right;
     const size_t at = text.find(right);
-    ASSERT_NE(at, std::string::npos) << "the text to replace is gone from " << file << ": " << right;
-    text.replace(at, right.size(), wrong);
-    std::ofstream(folder_ / file) << text;
+    if (at == std::string::npos) throw Error("The text to replace is gone from {}: {}", error.file, right);
+    text.replace(at, right.size(), error.wrong);
+    std::ofstream(folder_ / error.file) << text;
 }
 
 } // namespace support

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/planted_errors.h"
+
 namespace support
 {
 
@@ -16,8 +18,8 @@ class PlantedShaders
     PlantedShaders(const PlantedShaders&) = delete;
     PlantedShaders& operator=(const PlantedShaders&) = delete;
 
-    // Replaces the first `right` in a file (its path below shaders/). A text that is not there fails the test.
-    void plant(const std::string& file, const std::string& right, const std::string& wrong);
+    // Replaces the error's first `right` in its file. Throws Error: that text is not there.
+    void plant(const PlantedError& error);
     const std::filesystem::path& folder() const { return folder_; }
 
   private:

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/image/codecs.h"
+#include "tests/support/base64.h"
 
 TinyGltf::TinyGltf()
 {
@@ -66,16 +67,9 @@ scene::Scene TinyGltf::load(const scene::LoadOptions& options) const
 
 std::string TinyGltf::text() const
 {
-    constexpr char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string uri = "data:application/octet-stream;base64,";
-    for (size_t i = 0; i < data_.size(); i += 3) {
-        uint32_t bits = 0;
-        for (size_t k = i; k < i + 3; ++k) bits = bits << 8 | (k < data_.size() ? uint32_t(data_[k]) : 0);
-        for (int shift = 18; shift >= 0; shift -= 6) uri += DIGITS[bits >> shift & 63];
-    }
-    for (size_t k = data_.size(); k % 3 != 0; ++k) uri[uri.size() - (k - data_.size()) - 1] = '=';
     nlohmann::json document = json;
-    document["buffers"] = {{{"byteLength", data_.size()}, {"uri", uri}}};
+    document["buffers"] = {
+        {{"byteLength", data_.size()}, {"uri", "data:application/octet-stream;base64," + support::base64(data_)}}};
     return document.dump();
 }
 

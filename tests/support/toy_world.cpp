@@ -97,8 +97,9 @@ std::vector<std::byte> domainBytes(bool moves)
         for (uint32_t y = 0; y < SIZE; ++y)
             for (uint32_t x = 0; x < SIZE; ++x) domains.push_back(domainAt(x, y, frame, moves));
     const uint32_t header[4] = {PERIOD};
-    std::vector<std::byte> bytes;
-    const auto append = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+    std::vector<std::byte> bytes(sizeof(CELLS) + sizeof(header) + std::span(domains).size_bytes());
+    auto end = bytes.begin();
+    const auto append = [&](std::span<const std::byte> more) { end = std::ranges::copy(more, end).out; };
     append(std::as_bytes(std::span(CELLS)));
     append(std::as_bytes(std::span(header)));
     append(std::as_bytes(std::span(domains)));

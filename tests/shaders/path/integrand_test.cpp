@@ -104,7 +104,7 @@ TEST_P(ShiftErrors, AreFound)
         std::filesystem::copy(std::filesystem::path(TRICHROME_SOURCE_DIR "/tests/shaders/path") / file,
                               shaders.folder() / file);
     for (const ShiftError::Plant& plant : error.plants)
-        ASSERT_NO_FATAL_FAILURE(shaders.plant(plant.file, plant.right, plant.wrong));
+        shaders.plant({error.name, plant.file, plant.right, plant.wrong});
     gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
     ShiftLab lab(planted, "", Shift::Hybrid);
     const ShiftFindings found = findingsOf(lab, Shift::Hybrid, 1);

@@ -1,0 +1,67 @@
+#include "tests/support/planted_errors.h"
+
+#include "engine/base/error.h"
+
+namespace support
+{
+
+const std::vector<PlantedError>& plantedErrors()
+{
+    static const std::vector<PlantedError> list = {
+        {"WeightTimes1_02", "restir/reservoir.glsl", "        here.weightSum = sum;\n",
+         "        here.weightSum = 1.02 * sum;\n"},
+        {"MissingJacobian", "canonical.comp", "finiteOrCounted(f * density, STAGE)", "f"},
+        {"SwappedTemporalMis", "restir/reservoir.glsl", "here.weightSum * rest(historyConfidence, rho, confidence);",
+         "here.weightSum * rest(confidence, rho, historyConfidence);"},
+        {"SwappedSpatialMis", "spatial_gather.comp", "part * share(neighborConfidence, b, confidence);",
+         "part * share(confidence, b, neighborConfidence);"},
+        {"TemporalConfidenceOffByOne", "restir/reservoir.glsl",
+         "here.weightSum * rest(historyConfidence, rho, confidence);",
+         "here.weightSum * rest(historyConfidence + 1.0, rho, confidence);"},
+        {"SpatialConfidenceOffByOne", "spatial_gather.comp", "share(confidence, a, neighborConfidence);",
+         "share(confidence, a, neighborConfidence + 1.0);"},
+        {"StaleTarget", "temporal.comp", "r[c].f = fHere[c];", "r[c].f = old[c].f;"},
+        {"EmptyHistoryForgotten", "temporal.comp", "if (historyConfidence == 0u ||",
+         "if (loadHistoryHead(previousPixel, 0u).weightSum == 0.0 || historyConfidence == 0u ||"},
+        {"FailedShiftForgotten", "restir/reservoir.glsl", "        here.weightSum = weight;\n", ""},
+        {"LuminanceWeights", "temporal.comp", "ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f))",
+         "ratio(dot(vec3(1.0), fThere[c]), dot(vec3(1.0), r[c].f))"},
+        {"NeighborsByContent", "spatial_gather.comp", "chosenBy(neighbor, slot) == pixel ?",
+         "chosenBy(neighbor, slot) == pixel && loadReservoirsHead(neighbor, 0u).weightSum > 0.0 ?"},
+        {"PathOfAnother", "spatial_gather.comp", "loadReservoirsPath(lender[c], c)", "loadReservoirsPath(pixel, c)"},
+        // What weighted color alone shows: reservoirs stay right.
+        {"ColorOfOwnWeightTimes1_02", "temporal.comp", "color += weight * colorOf", "color += 1.02 * weight * colorOf"},
+        {"ColorBySwappedTemporalWeights", "temporal.comp",
+         "color += weight * colorOf(c, r[c].f) + historyWeight * colorOf(c, fHere[c]);",
+         "color += historyWeight * colorOf(c, r[c].f) + weight * colorOf(c, fHere[c]);"},
+        {"ColorFromTheHistorysDomain", "temporal.comp", "historyWeight * colorOf(c, fHere[c])",
+         "historyWeight * colorOf(c, old[c].f)"},
+        {"ColorFromTheNeighborsDomain", "spatial_gather.comp", "weighted += weight * colorOf(c, fHere);",
+         "weighted += weight * colorOf(c, other.f);"},
+        {"ColorByTheOwnMisWeight", "spatial_gather.comp", "weighted += weight * colorOf(c, fHere);",
+         "weighted += taken * (other.weightSum + other.carry) * colorOf(c, fHere);"},
+        {"ColorOfTheOwnSampleWhole", "spatial_gather.comp", "(r[c].weightSum * kept[c] + r[c].carry)",
+         "(r[c].weightSum + r[c].carry)"},
+        {"ColorOfAKeptShare2PercentTooLarge", "spatial_gather.comp", "(r[c].weightSum * kept[c] + r[c].carry)",
+         "(r[c].weightSum * (kept[c] + 0.04 * (1.0 - kept[c])) + r[c].carry)"},
+        {"ColorOfTheFirstLeafTwice", "canonical.comp", "allPaths += f;",
+         "allPaths += canonical[0].weightSum > 0.0 ? f : 2.0 * f;"},
+        // Of these the toy knows nothing: they are in what it stands for.
+        {"MissingGeometryTerm", "path/integrand.glsl", "abs(dot(at.geometricNormal, direction)) / squared;",
+         "abs(dot(at.geometricNormal, direction));"},
+        {"MissingDeparture", "path/trunk.glsl", "trunk.arrival * trunk.departure;", "trunk.arrival;"},
+    };
+    return list;
+}
+
+const PlantedError& plantedError(const std::string& name)
+{
+    std::string names;
+    for (const PlantedError& error : plantedErrors()) {
+        if (name == error.name) return error;
+        names += (names.empty() ? "" : ", ") + std::string(error.name);
+    }
+    throw Error("There is no planted error \"{}\"; there are: {}.", name, names);
+}
+
+} // namespace support
