@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 
 #include <glm/glm.hpp>
 
+#include "engine/base/error.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/tuning.h"
 #include "tests/support/gpu_fixture.h"
@@ -46,6 +47,17 @@ class FrameLib : public GpuTest
         return counts;
     }
 
+    // Have the device's compute shaders subgroup arithmetic?
+    static bool sumsSubgroups()
+    {
+        try {
+            openDevice({.tuning = "counters=subgroup"});
+            return true;
+        } catch (const Error&) {
+            return false;
+        }
+    }
+
     std::vector<glm::vec4> results;
 };
 
@@ -54,7 +66,7 @@ TEST_F(FrameLib, CountersAreExactInEachForm)
     constexpr uint32_t COUNT = 3 * 64 + 21;
     std::mt19937 engine(7);
     std::vector<uint32_t> amounts(COUNT);
-    for (uint32_t& amount : amounts) amount = engine() % 1000;
+    for (uint32_t& amount : amounts) amount = uint32_t(engine() % 1000);
     std::fill(amounts.begin() + 40, amounts.begin() + 60, 0u);
     std::vector<glm::vec4> values(COUNT, glm::vec4(1));
     for (uint32_t i = 0; i < COUNT; i += 9) values[i].y = std::numeric_limits<float>::infinity();
@@ -69,9 +81,12 @@ TEST_F(FrameLib, CountersAreExactInEachForm)
     }
     const uint32_t notFinite = shared::COUNTER_NONFINITE + shared::STAGE_TEMPORAL;
     expected[notFinite] = (COUNT + 8) / 9;
+    const bool sums = sumsSubgroups();
+    if (!sums) std::printf("SKIPPED, NOT TESTED: sums of subgroups, which this device lacks\n");
     // Also where the low word overflows on the way.
     for (const uint64_t start : {uint64_t{0}, uint64_t{0xffffff80}, uint64_t{0x5'ffff'0000}}) {
         EXPECT_EQ(count(shared::COUNTERS_EACH, amounts, values, start), expected) << start;
+        if (!sums) continue;
         EXPECT_EQ(count(shared::COUNTERS_SUBGROUP, amounts, values, start), expected) << start;
     }
     Counts onlyNotFinite(shared::COUNTER_COUNT);
