@@ -1,3 +1,4 @@
+#pragma GCC diagnostic ignored "-Wstringop-overflow"
 #include "tests/support/toy_world.h"
 
 #include <algorithm>
