@@ -1,4 +1,3 @@
-#pragma GCC diagnostic ignored "-Wstringop-overflow"
 #include "tests/support/toy_world.h"
 
 #include <algorithm>
