@@ -10,6 +10,7 @@
 #include "engine/scene/shapes.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/reference_tracer.h"
+#include "tests/support/scale_scenes.h"
 #include "tests/support/test_scenes.h"
 
 namespace bench
@@ -263,6 +264,11 @@ void addGeometry(std::vector<ExtremeCase>& cases)
         cases.push_back(sampled(fmt::format("scene times {:g}", scale), "lengths, areas and densities",
                                 scaled(glossyBall(), scale)));
     }
+    cases.push_back(
+        sampled("a triangle 40 km away", "lengths of a ten thousandth of the scene", support::farTriangle()));
+    cases.push_back(
+        sampled("a pane and a sheet under a dome of 10 km", "surfaces millimeters apart", support::dome(), 4));
+    cases.push_back(sampled("a pane on a ground of 40 km", "points known to millimeters", support::wideGround(), 4));
     cases.push_back(sampled("camera 10^4 sizes away", "cancellation on the camera's rays", farCamera(1e4)));
     cases.push_back(sampled("degenerate, duplicate and needle triangles", "normals and areas of 0; equal distances",
                             brokenTriangles()));

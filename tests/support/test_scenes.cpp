@@ -1,5 +1,7 @@
 #include "tests/support/test_scenes.h"
 
+#include "tests/support/scale_scenes.h"
+
 #include <functional>
 #include <random>
 
@@ -416,43 +418,6 @@ Scene panes()
     return scene;
 }
 
-// A triangle 40 km away: what is near has a ten thousandth of the scene's size.
-Scene farTriangle()
-{
-    Scene scene = ballOf(scene::glossy("ball", {0.9f, 0.6f, 0.4f}, 0.5f));
-    const auto first = uint32_t(scene.positions.size());
-    for (const vec3& corner : {vec3(4e4f, 0, 0), {4e4f, 1, 0}, {4e4f, 0, 1}}) {
-        scene.positions.push_back(corner);
-        scene.normals.emplace_back(-1, 0, 0);
-    }
-    scene.triangles.push_back({{first, first + 2, first + 1}, 0});
-    return scene;
-}
-
-// A pane of glass of 5 mm, and a sheet 2 mm above the floor, under a dome of 10 km.
-Scene dome()
-{
-    Scene scene;
-    addFloor(scene);
-    addLamp(scene, {9, 8, 7});
-    const Material glass = {.baseColor = {0.8f, 0.95f, 0.9f, 1},
-                            .metallic = 0,
-                            .roughness = 0.3f,
-                            .ior = 1.5f,
-                            .transmission = 1,
-                            .thin = false};
-    scene::addBox(scene, scene::addMaterial(scene, glass), {-1, 0.4f, 0}, {1, 1.6f, 0.005f});
-    Material sheet = scene::diffuse("sheet", {0.3f, 0.9f, 0.4f});
-    sheet.doubleSided = true;
-    scene::addQuad(scene, scene::addMaterial(scene, sheet), {-0.8f, 0.002f, 1.2f}, {1.6f, 0, 0}, {0, 0, -0.9f});
-    Material sky = scene::diffuse("sky", {0.3f, 0.4f, 0.6f});
-    sky.unlit = true;
-    scene::addSphere(scene, scene::addMaterial(scene, sky), vec3(0), 1e4f, 1, scene::Normals::Flat,
-                     scene::Facing::Inward);
-    addCamera(scene);
-    return scene;
-}
-
 passes::Settings TestScene::settings() const
 {
     passes::Settings result;
@@ -489,6 +454,7 @@ std::vector<TestScene> testScenes()
         {"Panes", panes, 2},
         {"FarTriangle", farTriangle},
         {"Dome", dome, 4},
+        {"WideGround", wideGround},
         {"Unlit", unlit, 2},
         {"PointLight", pointLight, 2},
         {"SpotLight", spotLight, 2},
