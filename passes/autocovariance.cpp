@@ -197,9 +197,9 @@ Settings lawSettings(Settings settings)
     return settings;
 }
 
-bool lawHolds(const Settings& settings, bool moving)
+bool lawHolds(const Settings& settings, bool sameView)
 {
-    return settings.temporal && settings.spatial == 0 && !moving;
+    return settings.temporal && settings.spatial == 0 && sameView;
 }
 
 bool accumulates(Method method)

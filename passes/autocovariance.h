@@ -96,8 +96,9 @@ std::array<glm::vec3, 3> resolvingTargets(Method method);
 // Of the single frames that the law of these settings is made of: without reuse, and showing the chosen samples.
 Settings lawSettings(Settings settings);
 
-// Whether the law of the chain holds: temporal reuse alone, of a resting camera.
-bool lawHolds(const Settings& settings, bool moving);
+// Whether the law of the chain holds: temporal reuse alone, every pixel seeing the same point in each frame (the camera
+// rests, and Renderer::viewRepeats()).
+bool lawHolds(const Settings& settings, bool sameView);
 
 // Whether every channel has a reservoir of its own, so that a resting camera's chain is the mean of the path tracer's
 // frames.

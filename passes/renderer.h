@@ -94,6 +94,8 @@ class Renderer
     std::vector<std::pair<std::string, Variant>> stagesFor(const Settings& settings, bool cameraMoves = false) const;
     // A stage of the caller's own over what frames leave behind, and over `more`; it lives until apply().
     std::unique_ptr<Stage> makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more = {});
+    // Whether every pixel sees the same point in each frame while the camera rests.
+    bool viewRepeats(const Settings& settings) const;
     const Variant& variant() const { return variant_; }
     const std::shared_ptr<PipelinePool>& pipelines() { return pipelines_; }
     gpu::Device& device() { return device_; }
@@ -107,7 +109,6 @@ class Renderer
     void createBuffers();
     void createStages();
     const Stage& temporal();
-    bool viewRepeats(const Settings& settings) const;
     bool seesTheSame(const std::optional<shared::CameraUniform>& from) const;
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder);

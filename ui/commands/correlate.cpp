@@ -93,6 +93,8 @@ class Correlator
         emission_ = emitters_->readFrame();
     }
 
+    bool sameView() const { return !cameraAt_ && emitters_->viewRepeats(plain_); }
+
     // The law of plain frames, as many as the longest law of a method has.
     CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
     {
@@ -129,7 +131,7 @@ class Correlator
   private:
     bool needsLaw(const NamedMethod& method) const
     {
-        return passes::lawHolds(method.settings, bool(cameraAt_)) && !passes::accumulates(method.settings.method);
+        return passes::lawHolds(method.settings, sameView()) && !passes::accumulates(method.settings.method);
     }
 
     passes::Renderer& rendererOf(const std::string& name, const passes::Settings& settings, uint32_t runs)
@@ -288,6 +290,7 @@ int CorrelateCommand::run() const
     for (const CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
     Correlation correlation{.scene = scene.name,
                             .moving = bool(cameraAt),
+                            .sameView = correlator.sameView(),
                             .partial = interrupt.requested(),
                             .width = base.width,
                             .height = base.height,

@@ -303,9 +303,10 @@ struct Writer {
         for (const passes::Repeat& repeat : report.repeats) nonFinite += repeat.nonFinite;
         page.paragraph(fmt::format("Values that were not finite, all methods and repeats: {}.", nonFinite));
         if (!report.moving)
-            page.paragraph(
-                "With a resting camera and no spatial reuse, rgb-restir is progressive accumulation, which pt "
-                "does more cheaply: it has to earn its cost with spatial reuse and motion.");
+            page.paragraph("With a resting camera, rays through the pixels' centers and no spatial reuse, rgb-restir "
+                           "is progressive "
+                           "accumulation, which pt "
+                           "does more cheaply: it has to earn its cost with spatial reuse and motion.");
     }
 
     // The corner of the window, a quarter of the picture wide and high, where the methods err most.

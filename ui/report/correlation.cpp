@@ -96,7 +96,7 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
     if (!plain.empty()) correlation.sigma2 = laws(plain, [](const passes::FrameLaw& law) { return law.variance; });
     for (const NamedMethod& method : methods) {
         Curve curve{.method = method};
-        const bool known = passes::lawHolds(method.settings, correlation.moving);
+        const bool known = passes::lawHolds(method.settings, correlation.sameView);
         const Batches own = passes::accumulates(method.settings.method) ? plain : withLaw(batches, method.name);
         if (!own.empty() && known) {
             curve.plateau = laws(own, [](const passes::FrameLaw& law) { return law.plateau; });

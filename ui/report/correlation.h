@@ -45,6 +45,7 @@ struct Curve {
 struct Correlation {
     std::string scene;
     bool moving = false;
+    bool sameView = true; // every pixel sees the same point in each frame; else no law is known
     bool partial = false;
     uint32_t width = 0, height = 0;             // of one run, pixels
     uint32_t runs = 0;                          // asked for

@@ -215,11 +215,12 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
                 ? fmt::format(
                       "Measured and predicted agree: of {} points none is further apart than {:.1f} standard errors.",
                       count, worst)
-                : fmt::format("Measured and predicted DISAGREE: of {} points one is {:.1f} standard errors apart. "
-                              "Alpha-blended surfaces seen directly would explain it, and so would rare bright paths "
-                              "in few runs (try more --runs on a smaller --size); else something is wrong.",
-                              count, worst));
-    if (each != nullptr && passes::lawHolds(each->method.settings, correlation.moving))
+                : fmt::format(
+                      "Measured and predicted DISAGREE: of {} points one is {:.1f} standard errors apart. "
+                      "Rare bright paths in few runs would explain it (try more --runs on a smaller --size); else "
+                      "something is wrong.",
+                      count, worst));
+    if (each != nullptr && passes::lawHolds(each->method.settings, correlation.sameView))
         sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
                             "accumulation: frame M is the "
                             "mean of the path tracer's first M frames, which a path tracer that adds up its frames "
@@ -228,6 +229,9 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
     if (correlation.moving)
         sentences.push_back("The camera moves: figures follow surface points from frame to frame, and the law of the "
                             "resting camera says nothing about them.");
+    else if (!correlation.sameView)
+        sentences.push_back("Pixels see other points in each frame (rays anywhere through the pixel, or alpha-blended "
+                            "surfaces), and the law of the resting camera says nothing about that.");
     if (sentences.empty()) sentences.push_back("Nothing was measured yet.");
     return sentences;
 }

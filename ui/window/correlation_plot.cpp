@@ -48,7 +48,10 @@ std::string sentenceOf(const WindowState& state, Side side)
     std::string text = fmt::format("{}: {} x {} pixels, {} runs, {} batches done", name, curve->width, curve->height,
                                    curve->runs, curve->batches);
     if (curve->plateau) text += fmt::format("; levels off at P = {:.2g}", *curve->plateau);
-    if (!passes::lawHolds(settings, false)) text += "; no law is known with reuse in space";
+    if (settings.spatial > 0)
+        text += "; no law is known with reuse in space";
+    else if (!curve->plateau && curve->points.size() > 1 && !passes::accumulates(settings.method))
+        text += "; no law is known where pixels see other points in each frame";
     return text;
 }
 
