@@ -56,7 +56,9 @@ Container openBinary(std::span<const std::byte> bytes)
         if (chunk == 1 && type == BINARY_CHUNK) container.binary = content;
         offset += std::min<size_t>((chunkLength + size_t{3}) / 4 * 4, bytes.size() - offset);
     }
-    while (!container.json.empty() && container.json.back() == std::byte{0}) // padding, if not by the book
+    // Padding, by the book of spaces; some write zero bytes.
+    while (!container.json.empty() &&
+           (container.json.back() == std::byte{0} || container.json.back() == std::byte{' '}))
         container.json = container.json.first(container.json.size() - 1);
     return container;
 }
