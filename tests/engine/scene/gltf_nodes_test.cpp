@@ -114,6 +114,16 @@ TEST(GltfNodes, LightsOfAllKinds)
     EXPECT_EQ(scene.environment.width, 0u);
 }
 
+// A thousandth of a degree is no mistake.
+TEST(GltfNodes, NarrowSpotsAreKept)
+{
+    TinyGltf file;
+    addLight(file, {{"type", "spot"}, {"spot", {{"innerConeAngle", 1e-5}, {"outerConeAngle", 1.75e-5}}}});
+    const Scene scene = file.load();
+    EXPECT_FLOAT_EQ(scene.lights.at(0).innerConeAngle, 1e-5f);
+    EXPECT_FLOAT_EQ(scene.lights.at(0).outerConeAngle, 1.75e-5f);
+}
+
 TEST(GltfNodes, WithoutLightThereIsASkyUnlessTheCallerHasOne)
 {
     TinyGltf file;
