@@ -56,16 +56,12 @@ double hyab(const glm::dvec3& a, const glm::dvec3& b)
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
 
-// Of the light above 0, or of that below.
-enum class Part { Above, Below };
-
 Planes opponentPlanes(const Image& picture, Part part)
 {
-    Planes planes = {tonemapped(picture, 0), tonemapped(picture, 1), tonemapped(picture, 2)};
-    const double sign = part == Part::Above ? 1 : -1;
+    Planes planes;
+    for (size_t c = 0; c < 3; ++c) planes[c] = partOf(tonemapped(picture, int(c)), part);
     for (size_t i = 0; i < picture.pixels.size(); ++i) {
-        const glm::dvec3 rgb(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
-        const glm::dvec3 color = opponentFromRgb(glm::max(sign * rgb, 0.0));
+        const glm::dvec3 color = opponentFromRgb({planes[0].values[i], planes[1].values[i], planes[2].values[i]});
         for (int c = 0; c < 3; ++c) planes[size_t(c)].values[i] = color[c];
     }
     return planes;

@@ -25,8 +25,8 @@ inline glm::dvec3 yCoCg(const glm::dvec3& rgb)
     return {rgb.r / 4 + rgb.g / 2 + rgb.b / 4, (rgb.r - rgb.b) / 2, rgb.g / 2 - (rgb.r + rgb.b) / 4};
 }
 
-// Throws Error: other sizes, a value that is not finite. Values below 0 count: c/(c+1) goes on as c/(1+|c|) for PSNR
-// and SSIM, and flip.h says what FLIP makes of them.
+// Throws Error: other sizes, a value that is not finite. Values below 0 count: c/(c+1) goes on as c/(1+|c|) for PSNR;
+// SSIM and FLIP compare what is below as a picture of its own, and the worse of a pixel's two counts.
 Metrics measure(const Image& reference, const Image& picture);
 
 } // namespace image

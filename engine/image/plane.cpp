@@ -35,6 +35,13 @@ Plane tonemapped(const Image& picture, int channel)
     return plane;
 }
 
+Plane partOf(const Plane& plane, Part part)
+{
+    Plane result = plane;
+    for (double& value : result.values) value = std::max(part == Part::Above ? value : -value, 0.0);
+    return result;
+}
+
 Plane filtered(const Plane& plane, std::span<const double> alongX, std::span<const double> alongY)
 {
     CHECK_EQ(alongX.size() % 2, 1u);

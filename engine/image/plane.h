@@ -17,6 +17,10 @@ struct Plane {
 // c/(1+|c|) of one channel: c/(c+1), and odd, so that what is below 0 is as far from it as what is above.
 Plane tonemapped(const Image& picture, int channel);
 
+// No screen shows values below 0, and what is made for screens knows none: what is below is then a picture of its own.
+enum class Part { Above, Below };
+Plane partOf(const Plane& plane, Part part); // the values above 0, or minus those below; 0 elsewhere
+
 // The sum over the window of kernel times pixel: columns of it `alongX`, rows `alongY`, both of odd size and about the
 // pixel. Outside the picture its edge goes on.
 Plane filtered(const Plane& plane, std::span<const double> alongX, std::span<const double> alongY);

@@ -56,7 +56,8 @@ void ReportCase::TearDown()
 void ReportCase::open(const std::string& name)
 {
     folder_ = std::filesystem::absolute(sharedPath("reports"));
-    for (const Json& one : readJson(folder_ / "manifest.json")["cases"])
+    const Json manifest = readJson(folder_ / "manifest.json");
+    for (const Json& one : manifest["cases"])
         if (one["name"] == name) case_ = one;
     ASSERT_FALSE(case_.is_null()) << "no situation " << name;
 }

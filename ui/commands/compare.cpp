@@ -88,9 +88,8 @@ ComparedPicture load(const std::string& file)
 {
     ComparedPicture picture{file, image::read(file), {}};
     if (const size_t count = image::countBelowZero(picture.loaded.image))
-        picture.loaded.warnings.push_back(fmt::format("Picture \"{}\" has {} values below 0: PSNR and SSIM are of "
-                                                      "c/(1+|c|), FLIP compares what is below 0 as light "
-                                                      "of its own.",
+        picture.loaded.warnings.push_back(fmt::format("Picture \"{}\" has {} values below 0: PSNR is of c/(1+|c|); "
+                                                      "SSIM and FLIP compare what is below 0 as a picture of its own.",
                                                       file, count));
     for (const std::string& warning : picture.loaded.warnings) std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     return picture;
@@ -169,7 +168,7 @@ Action setUpCompare(CLI::App& app)
     app.add_option(
            "--max-flip", command->maxFlip,
            "The exit code is 1 when a picture's mean FLIP is above this. Of what a screen shows, 0 to 1: 0.01 "
-           "is hardly visible noise. What is below 0 no screen shows: it is compared as light of its own, and the "
+           "is hardly visible noise. What is below 0 no screen shows: it is compared as a picture of its own, and the "
            "larger error counts. Default: no limit.")
         ->option_text("X")
         ->check(within(0.0, 1.0));

@@ -34,11 +34,11 @@ constexpr const char* STYLE = R"(<style>
 constexpr const char* MEANINGS =
     "MSE, relative MSE (x - r)² / (r² + 0.01) and MAPE |x - r| / (|r| + 0.01) are of linear RGB. PSNR (peak 1), SSIM "
     "(11x11 Gaussian window) and FLIP (LDR-FLIP, 67 pixels per degree; 0 cannot be seen, 1 is green for blue) are of "
-    "c/(c+1), what a screen shows; below 0, where the viewer shows black, PSNR and SSIM are of c/(1-c), and FLIP "
-    "compares "
-    "what is below 0 as light of its own. Luma and chroma are the squared errors of Y and of Co and Cg. Mean ratio is "
-    "the sum "
-    "of a channel over the reference's. HDR-FLIP is not computed.";
+    "c/(c+1), what a screen shows. Below 0, where the viewer shows black, PSNR is of c/(1-c); SSIM and FLIP compare "
+    "what "
+    "is below 0 as a picture of its own, and the worse of a pixel's two counts. Luma and chroma are the squared errors "
+    "of "
+    "Y and of Co and Cg. Mean ratio is the sum of a channel over the reference's. HDR-FLIP is not computed.";
 
 std::string figure(const std::vector<std::byte>& png, const std::string& captionHtml, int shownWidth = 0)
 {

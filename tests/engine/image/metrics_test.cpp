@@ -193,7 +193,7 @@ TEST(Metrics, FlipErrorsLieWhereThePicturesDiffer)
     EXPECT_EQ(errors.values[0], 0);
 }
 
-// A picture of negatives is as far from black as its mirror image, and farther from that than either is from black.
+// A picture of negatives is as far from black as its mirror image, and not near that.
 TEST(Metrics, ValuesBelowZeroCountAsMuchAsThoseAbove)
 {
     const auto times = [](float factor, image::Image image) {
@@ -210,7 +210,7 @@ TEST(Metrics, ValuesBelowZeroCountAsMuchAsThoseAbove)
     EXPECT_EQ(above.ssim, below.ssim);
     EXPECT_NEAR(apart.psnr, above.psnr - 20 * std::log10(2), 1e-9);
     EXPECT_GT(apart.flip, 0.3);
-    EXPECT_LT(apart.ssim, above.ssim);
+    EXPECT_LT(apart.ssim, 0.01);
     EXPECT_EQ(image::measure(negative, negative).flip, 0);
     EXPECT_EQ(image::measure(negative, times(-1, picture(movedBars))).flip,
               image::measure(light, picture(movedBars)).flip);
