@@ -131,9 +131,14 @@ class Writer
 
     void addMaterials()
     {
-        for (const scene::Image& image : scene_.images)
-            json_["images"].push_back({{"bufferView", view(pngOf(image))}, {"mimeType", "image/png"}});
-        for (const Material& m : scene_.materials) json_["materials"].push_back(materialOf(m));
+        // What adds to the document comes first: references into it do not last.
+        for (const scene::Image& image : scene_.images) {
+            const int bytes = view(pngOf(image));
+            json_["images"].push_back({{"bufferView", bytes}, {"mimeType", "image/png"}});
+        }
+        Json materials = Json::array();
+        for (const Material& m : scene_.materials) materials.push_back(materialOf(m));
+        json_["materials"] = materials;
     }
 
     Json materialOf(const Material& m)

@@ -86,11 +86,11 @@ class Verdicts : public testing::TestWithParam<Law>
 {
 };
 
-// In 600 sequences of each law none; their tails make a first suspicion common.
+// In 6000 sequences of each law none; their tails make a first suspicion common.
 TEST_P(Verdicts, RaiseNoFalseAlarm)
 {
     size_t undecided = 0;
-    for (uint64_t i = 0; i < 600; ++i) {
+    for (uint64_t i = 0; i < 6000; ++i) {
         Draw draw{17, i};
         const Answer answer = sequence(GetParam(), 1, draw, 1);
         EXPECT_NE(answer, Answer::Differ) << "sequence " << i;
@@ -116,16 +116,17 @@ TEST(Verdict, OfTheLastTestHoldsWhereFlashesAreMissed)
         }
 }
 
+// Of a third, which these laws show with 256 values.
 TEST(Verdict, FindsBiases)
 {
-    for (const double truth : {0.9, 1.1}) {
+    constexpr size_t LEAST[] = {20, 15, 5}; // of 20, by law: their spreads are 0.5, 1 and 1.3
+    for (const double truth : {0.7, 1.4})
         for (const size_t law : {0, 1, 2}) {
             Draw draw{5, law};
             size_t found = 0;
             for (int i = 0; i < 20; ++i) found += sequence(LAWS[law], truth, draw) == Answer::Differ;
-            EXPECT_GT(found, law == 0 ? 15u : 1u) << LAWS[law].name << " " << truth;
+            EXPECT_GE(found, LEAST[law]) << LAWS[law].name << " " << truth;
         }
-    }
 }
 
 TEST(Verdict, RoundingIsNoDifference)
@@ -136,6 +137,19 @@ TEST(Verdict, RoundingIsNoDifference)
     b.finish(1);
     EXPECT_EQ(compare(a, b, LEVELS[2], 5e-4).answer, Answer::Agree);
     EXPECT_EQ(compare(a, b, LEVELS[2], 3e-4).answer, Answer::Differ); // a constant is known exactly
+}
+
+// A path tracer that has hardly picked a lamp knows nothing of it, however many values it has.
+TEST(Verdict, NeedsChances)
+{
+    Values tried, truth;
+    for (int i = 0; i < 10000; ++i) tried.add(0);
+    truth.estimate = {1e-6, 1e-18, 1e4};
+    truth.chances = 1e6;
+    tried.finish(1e-3);
+    EXPECT_EQ(compare(tried, truth, LEVELS[2], 5e-4).answer, Answer::Undecided);
+    tried.finish(1e-2);
+    EXPECT_EQ(compare(tried, truth, LEVELS[2], 5e-4).answer, Answer::Differ);
 }
 
 // --------------------------------------------------------------------------------------------------------------- cases
@@ -161,8 +175,8 @@ TEST(Cases, OfASessionCompileOnce)
         };
         const passes::Variant first = featuresOf(0);
         for (uint64_t place = 1; place < 4; ++place)
-            EXPECT_EQ(passes::describe(featuresOf(place)), passes::describe(first))
-                << index << " " << session.draw(place).describe();
+            for (const auto& [name, value] : passes::describe(featuresOf(place)))
+                EXPECT_EQ(value, passes::describe(first).at(name)) << name << " " << session.draw(place).describe();
     }
 }
 

@@ -171,8 +171,14 @@ void Palette::addAttributes(Scene& scene, Draw& draw) const
 void Palette::addTokens(Scene& scene, Draw& draw) const
 {
     if (scene.positions.empty()) return;
-    for (const Stuff one : stuff)
-        scene.triangles.push_back({.vertices = {0, 0, 0}, .material = scene::addMaterial(scene, material(draw, one))});
+    for (const Stuff one : stuff) {
+        Material token = material(draw, one);
+        if (secondUv)
+            for (TextureUse* use : {&token.baseColorTexture, &token.metallicRoughnessTexture, &token.normalTexture,
+                                    &token.transmissionTexture, &token.specularTexture, &token.specularColorTexture})
+                use->uvSet = 1;
+        scene.triangles.push_back({.vertices = {0, 0, 0}, .material = scene::addMaterial(scene, token)});
+    }
 }
 
 void Palette::complete(Scene& scene, Draw& draw) const

@@ -1,12 +1,14 @@
 #include "tests/hunt/trial.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
+#include "engine/scene/scene_tables.h"
 
 namespace hunt
 {
@@ -212,7 +214,10 @@ class Examination
             return [&](std::span<const glm::vec3> pixels) { values.add(valueOf(region, pixels, int(channel_))); };
         };
         trial(stage, addTo(tried));
-        tried.finish(pathTracing_ ? 1 : stand_.chancesPerRun());
+        if (pathTracing_)
+            tried.finish(reference_ ? leastPick() : 1);
+        else
+            tried.finish(stand_.chancesPerRun(), reach(region));
         if (reference_) {
             const uint64_t samples = samples_ * scale();
             truth.estimate = estimateOf(region, stand_.reference(seedOf(stage, 1), samples), channel_);
@@ -222,6 +227,25 @@ class Examination
             truth.finish(1);
         }
         return report(stage, region, compare(tried, truth, level, margin()), tried.estimate, truth.estimate);
+    }
+
+    // The float64 tracer samples every light at every vertex, the path tracer one of them: what it meets of the least
+    // is rarer by this probability.
+    double leastPick() const
+    {
+        const scene::SceneTables tables = scene::makeSceneTables(case_.scene, UINT64_MAX);
+        double least = 1;
+        for (uint32_t i = 0; i < tables.uniform.lightCount; ++i)
+            least = std::min(least, double(std::bit_cast<float>(tables.sceneData[tables.uniform.lightOffset + i].z)));
+        return least;
+    }
+
+    // Frames and neighbors whose paths a run can show in the region.
+    double reach(const Region& region) const
+    {
+        const passes::Settings& s = case_.settings;
+        const double pixels = double(s.width) * s.height / double(region.pixels.size());
+        return double(s.temporal ? s.frames : 1) * (s.spatial > 0 ? pixels : 1);
     }
 
     bool repeats()

@@ -31,10 +31,11 @@ Estimate winsorized(std::vector<double> values, double share)
 
 } // namespace
 
-void Values::finish(double chancesEach)
+void Values::finish(double chancesEach, double reachOfEach)
 {
     estimate = estimateOf(values);
     chances = chancesEach * double(values.size());
+    reach = reachOfEach;
 }
 
 Comparison compare(const Estimate& a, const Estimate& b, double level, double relativeMargin)
@@ -56,8 +57,9 @@ Comparison compare(const Values& a, const Values& b, double level, double relati
     if (result.answer != Answer::Differ) return result;
     const bool aIsHigher = a.estimate.mean > b.estimate.mean;
     const Values &high = aIsHigher ? a : b, &low = aIsHigher ? b : a;
-    if (high.values.empty()) return result;
-    const Estimate cut = winsorized(high.values, ENOUGH_EVENTS / low.chances);
+    if (low.chances < ENOUGH_EVENTS) result.answer = Answer::Undecided;
+    if (high.values.empty() || result.answer == Answer::Undecided) return result;
+    const Estimate cut = winsorized(high.values, ENOUGH_EVENTS * high.reach / low.chances);
     const bool still =
         cut.mean > low.estimate.mean && compare(cut, low.estimate, level, relativeMargin).answer == Answer::Differ;
     if (!still) result.answer = Answer::Undecided;

@@ -20,10 +20,11 @@ constexpr double LEVELS[] = {1e-3, 1e-4, 1e-8};
 struct Values {
     std::vector<double> values; // may be empty: then `estimate` is all that is known
     statistics::Estimate estimate;
-    double chances = 0; // how often this method could have met a rare path: frames that stand behind the values
+    double chances = 0; // of all values to have met a rare path, at least: the frames that they rest on
+    double reach = 1;   // chances of one value, at most
 
     void add(double value) { values.push_back(value); }
-    void finish(double chancesEach); // makes the estimate
+    void finish(double chancesEach, double reachOfEach = 1); // makes the estimate
 };
 
 // The events that a method is trusted to have met have happened so often, on average. With 60 of them the mean is known
