@@ -247,7 +247,7 @@ class RenderEnded : public Render, public testing::WithParamInterface<int>
 };
 
 INSTANTIATE_TEST_SUITE_P(Signals, RenderEnded, testing::Values(SIGINT, SIGTERM, SIGHUP),
-                         [](const auto& info) { return std::string(sigabbrev_np(info.param)); });
+                         [](const auto& ended) { return std::string(sigabbrev_np(ended.param)); });
 
 TEST_P(RenderEnded, WritesWhatThereIsMarkedAsPartial)
 {
