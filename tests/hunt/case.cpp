@@ -93,6 +93,8 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
     p.directional = draw.chance(kind == Kind::Lights ? 0.4 : 0.1);
     if (kind == Kind::Sky)
         p.sky = true, p.emitters = p.emitters && draw.chance(0.3), p.punctual = p.directional = false;
+    // Light from all around is picked by the area of the scene, which is all but always where it spans kilometers.
+    if (kind == Kind::Scales) p.directional = false, p.sky = p.sky && !p.emitters && !p.punctual;
     if (!(p.sky || p.emitters || p.punctual || p.directional)) p.emitters = true;
     return p;
 }

@@ -56,28 +56,27 @@ const std::vector<Law> LAWS = {
     pareto("Pareto3", 3),
     pareto("Pareto1_5", 1.5),
     pareto("Pareto1_2", 1.2),
+    {"Reciprocal", [](Draw& d) { return 0.5 + 0.5 * std::min(1 / (1 - d.uniform()), 1e6) / (1 + std::log(1e6)); }},
     rare("Flash1e2", 1e-2),
     rare("Flash1e3", 1e-3),
     rare("Flash1e4", 1e-4),
     rare("Flash1e5", 1e-5),
 };
 
-// As Examination goes about it (trial.cpp), on one quantity: `tries` is how many of them the first test looks at.
-Answer sequence(const Law& law, double trueMean, Draw& draw, int tries = 1)
+// As Examination goes about it (trial.cpp), on one quantity.
+Answer sequence(const Law& law, const Law& trueLaw, double trueMean, Draw& draw)
 {
-    constexpr size_t RUNS[] = {256, 1024, 4096}, FRAMES[] = {2048, 8192, 32768};
+    constexpr size_t RUNS[] = {256, 1024, 8192}, FRAMES[] = {2048, 8192, 65536};
     Answer answer = Answer::Differ;
     for (size_t stage = 0; stage < 3 && answer == Answer::Differ; ++stage) {
         answer = Answer::Agree;
-        for (int i = 0; i < (stage == 0 ? tries : 1) && answer == Answer::Agree; ++i) {
-            Values tried, truth;
-            for (size_t run = 0; run < RUNS[stage]; ++run) tried.add(law.value(draw));
-            for (size_t frame = 0; frame < FRAMES[stage]; ++frame) truth.add(trueMean * law.value(draw));
-            tried.finish(1);
-            truth.finish(1);
-            answer = stage == 0 ? compare(tried.estimate, truth.estimate, LEVELS[0] / tries, 5e-4).answer
-                                : compare(tried, truth, LEVELS[stage], 5e-4).answer;
-        }
+        Values tried, truth;
+        for (size_t run = 0; run < RUNS[stage]; ++run) tried.add(law.value(draw));
+        for (size_t frame = 0; frame < FRAMES[stage]; ++frame) truth.add(trueMean * trueLaw.value(draw));
+        tried.finish(1);
+        truth.finish(1);
+        answer = stage == 2 ? compare(tried, truth, LEVELS[2], 5e-4).answer
+                            : compare(tried.estimate, truth.estimate, LEVELS[stage], 5e-4).answer;
     }
     return answer;
 }
@@ -92,7 +91,7 @@ TEST_P(Verdicts, RaiseNoFalseAlarm)
     size_t undecided = 0;
     for (uint64_t i = 0; i < 6000; ++i) {
         Draw draw{17, i};
-        const Answer answer = sequence(GetParam(), 1, draw, 1);
+        const Answer answer = sequence(GetParam(), GetParam(), 1, draw);
         EXPECT_NE(answer, Answer::Differ) << "sequence " << i;
         undecided += answer == Answer::Undecided;
     }
@@ -116,6 +115,18 @@ TEST(Verdict, OfTheLastTestHoldsWhereFlashesAreMissed)
         }
 }
 
+// Resampling may have a tail that path tracing has not.
+TEST(Verdict, HoldsWhereOneSideAloneHasATail)
+{
+    for (const Law& law : LAWS) {
+        if (std::string(law.name).starts_with("Flash")) continue; // of which nothing would tell
+        for (uint64_t i = 0; i < 1000; ++i) {
+            Draw draw{29, i};
+            EXPECT_NE(sequence(law, LAWS[0], 1, draw), Answer::Differ) << law.name << " " << i;
+        }
+    }
+}
+
 // Of a third, which these laws show with 256 values.
 TEST(Verdict, FindsBiases)
 {
@@ -124,7 +135,7 @@ TEST(Verdict, FindsBiases)
         for (const size_t law : {0, 1, 2}) {
             Draw draw{5, law};
             size_t found = 0;
-            for (int i = 0; i < 20; ++i) found += sequence(LAWS[law], truth, draw) == Answer::Differ;
+            for (int i = 0; i < 20; ++i) found += sequence(LAWS[law], LAWS[law], truth, draw) == Answer::Differ;
             EXPECT_GE(found, LEAST[law]) << LAWS[law].name << " " << truth;
         }
 }

@@ -1,8 +1,11 @@
 #include "tests/hunt/stand.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "engine/scene/scene_tables.h"
+#include "engine/scene/shapes.h"
 #include "tests/support/reference_tracer.h"
 
 namespace hunt
@@ -109,9 +112,50 @@ scene::Scene lookingAside(const Case& c, int way)
 
 } // namespace
 
-support::PixelEstimates Stand::reference(uint64_t seed, uint64_t samples) const
+namespace
 {
-    return support::reference(lookingAside(case_, int(seed % 4)), case_.settings, samples, Draw::mix(seed));
+
+// Calls visit(probability that the path tracer picks it, kind, index) for each light.
+template <class Visit>
+void eachLight(const scene::Scene& scene, Visit&& visit)
+{
+    const scene::SceneTables tables = scene::makeSceneTables(scene, UINT64_MAX);
+    for (uint32_t i = 0; i < tables.uniform.lightCount; ++i) {
+        const glm::uvec4 row = tables.sceneData[tables.uniform.lightOffset + i];
+        visit(double(std::bit_cast<float>(row.z)), row.w & 3u, row.w >> 2u);
+    }
+}
+
+void darken(scene::Scene& scene, uint32_t kind, uint32_t index)
+{
+    if (kind == shared::LIGHT_ENVIRONMENT) {
+        scene.environment = {};
+    } else if (kind == shared::LIGHT_TRIANGLE) {
+        scene::Material dark = scene.materials[scene.triangles[index].material];
+        dark.emission = glm::vec3(0);
+        scene.triangles[index].material = scene::addMaterial(scene, dark);
+    } else {
+        scene.lights[index].intensity = glm::vec3(0);
+    }
+}
+
+} // namespace
+
+double Stand::leastPick() const
+{
+    double least = 1;
+    eachLight(case_.scene, [&](double pick, uint32_t, uint32_t) { least = std::min(least, pick); });
+    return least;
+}
+
+support::PixelEstimates Stand::reference(uint64_t seed, uint64_t samples, double leastPick) const
+{
+    scene::Scene scene = lookingAside(case_, int(seed % 4));
+    if (leastPick > 0)
+        eachLight(case_.scene, [&](double pick, uint32_t kind, uint32_t index) {
+            if (pick < leastPick) darken(scene, kind, index);
+        });
+    return support::reference(scene, case_.settings, samples, Draw::mix(seed));
 }
 
 std::vector<bool> Stand::undefinedPixels() const

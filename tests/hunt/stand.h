@@ -28,7 +28,9 @@ class Stand
     void runs(uint64_t seed, uint64_t count, const TakeRun& take); // of the method on trial; at least so many
     void frames(uint64_t seed, uint64_t count,
                 const TakeRun& take); // of the path tracer where the last frame is seen from
-    support::PixelEstimates reference(uint64_t seed, uint64_t samples) const;
+    // Of float64. With `leastPick` without the lights that the path tracer picks with a smaller probability.
+    support::PixelEstimates reference(uint64_t seed, uint64_t samples, double leastPick = 0) const;
+    double leastPick() const; // of all lights
     // Of these pixels the center lies on an edge, and what float64 sees there is a matter of its last bit.
     std::vector<bool> undefinedPixels() const;
 

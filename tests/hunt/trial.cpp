@@ -1,14 +1,12 @@
 #include "tests/hunt/trial.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
-#include "engine/scene/scene_tables.h"
 
 namespace hunt
 {
@@ -66,8 +64,9 @@ Estimate estimateOf(const Region& region, const PixelEstimates& picture, size_t 
     return sum;
 }
 
-// How many times the first stage's samples the others take at most.
-constexpr uint64_t MOST[] = {1, 4, 16};
+// How many times the first stage's samples a later one takes at most; the last one, which has to know what it has
+// missed.
+constexpr uint64_t MOST = 4, MOST_AT_LAST = 32;
 constexpr uint64_t FIRST_FRAMES = 8192;     // of the path tracer, in 8x8 pixels
 constexpr double Z_WANTED = 9;              // standard errors: the last level takes 5.7 of them
 constexpr double ROUNDING = 5e-4;           // of the larger mean: both methods run the same float32 code on the device
@@ -139,15 +138,24 @@ class Examination
         Finding finding = first(regions);
         for (int stage = 1; finding.fault == Fault::Different && stage < effort_.stages; ++stage) {
             // What is obvious is shown again with few samples, and what few cannot decide with more.
+            const double most = double(isLast(stage) ? MOST_AT_LAST : MOST);
             const double z = std::max(std::abs(finding.tried - finding.truth) / finding.standardError, 1.0);
-            growth_ =
-                uint64_t(std::clamp(std::ceil(std::pow(Z_WANTED / z, 2) * double(growth_)), 1.0, double(MOST[stage])));
-            finding = again(stage, regions[region_], LEVELS[stage]);
-            if (finding.fault == Fault::Different || growth_ == MOST[stage]) continue;
-            growth_ = MOST[stage];
-            finding = again(stage + 2, regions[region_], LEVELS[stage] / 2);
+            growth_ = uint64_t(std::clamp(std::ceil(std::pow(Z_WANTED / z, 2) * double(growth_)), 1.0, most));
+            finding = again(stage, stage, regions[region_], LEVELS[stage]);
+            if (finding.fault == Fault::Different || double(growth_) == most) continue;
+            growth_ = uint64_t(most);
+            finding = again(stage, stage + 2, regions[region_], LEVELS[stage] / 2);
         }
         return finding;
+    }
+
+    bool isLast(int stage) const { return stage + 1 == effort_.stages; }
+
+    // The last stage asks what may be missing.
+    Comparison compared(int stage, const Values& tried, const Values& truth, double level) const
+    {
+        return isLast(stage) ? compare(tried, truth, level, margin())
+                             : compare(tried.estimate, truth.estimate, level, margin());
     }
 
     double margin() const { return reference_ ? REFERENCE_ROUNDING : ROUNDING; }
@@ -203,41 +211,44 @@ class Examination
                 finding = report(0, regions[i], comparison, here, there);
             }
         finding.stages = 1;
+        if (!reference_) setDimness(regions, truth);
         return finding;
     }
 
     // One region with fresh numbers and more of them.
-    Finding again(int stage, const Region& region, double level)
+    Finding again(int stage, int stream, const Region& region, double level)
     {
         Values tried, truth;
         const auto addTo = [&](Values& values) {
             return [&](std::span<const glm::vec3> pixels) { values.add(valueOf(region, pixels, int(channel_))); };
         };
-        trial(stage, addTo(tried));
+        trial(stream, addTo(tried));
         if (pathTracing_)
-            tried.finish(reference_ ? leastPick() : 1);
+            tried.finish(1);
         else
-            tried.finish(stand_.chancesPerRun(), reach(region));
-        if (reference_) {
-            const uint64_t samples = samples_ * scale();
-            truth.estimate = estimateOf(region, stand_.reference(seedOf(stage, 1), samples), channel_);
-            truth.chances = double(samples);
-        } else {
-            stand_.frames(seedOf(stage, 1), frames_ * scale(), addTo(truth));
+            tried.finish(stand_.chancesPerRun() * dimness_, reach(region));
+        if (!reference_) {
+            stand_.frames(seedOf(stream, 1), frames_ * scale(), addTo(truth));
             truth.finish(1);
+            return report(stage, region, compared(stage, tried, truth, level), tried.estimate, truth.estimate);
         }
-        return report(stage, region, compare(tried, truth, level, margin()), tried.estimate, truth.estimate);
-    }
-
-    // The float64 tracer samples every light at every vertex, the path tracer one of them: what it meets of the least
-    // is rarer by this probability.
-    double leastPick() const
-    {
-        const scene::SceneTables tables = scene::makeSceneTables(case_.scene, UINT64_MAX);
-        double least = 1;
-        for (uint32_t i = 0; i < tables.uniform.lightCount; ++i)
-            least = std::min(least, double(std::bit_cast<float>(tables.sceneData[tables.uniform.lightOffset + i].z)));
-        return least;
+        const uint64_t samples = samples_ * scale();
+        const auto referenceIs = [&](double leastPick) {
+            truth.estimate = estimateOf(region, stand_.reference(seedOf(stream, 1), samples, leastPick), channel_);
+            truth.chances = double(samples);
+        };
+        referenceIs(0);
+        Finding finding = report(stage, region, compared(stage, tried, truth, level), tried.estimate, truth.estimate);
+        // The float64 tracer samples every light at every vertex, the path tracer picks one: what it has hardly picked
+        // may be missing.
+        const double enough = ENOUGH_EVENTS / tried.chances;
+        if (finding.fault != Fault::Different || finding.tried > finding.truth || stand_.leastPick() >= enough)
+            return finding;
+        referenceIs(enough);
+        const bool still =
+            tried.estimate.mean < truth.estimate.mean && compared(stage, tried, truth, level).answer == Answer::Differ;
+        if (!still) finding.fault = Fault::Undecided;
+        return finding;
     }
 
     // Frames and neighbors whose paths a run can show in the region.
@@ -246,6 +257,16 @@ class Examination
         const passes::Settings& s = case_.settings;
         const double pixels = double(s.width) * s.height / double(region.pixels.size());
         return double(s.temporal ? s.frames : 1) * (s.spatial > 0 ? pixels : 1);
+    }
+
+    // What a pixel shows of its neighbors' dim paths is chosen as rarely as it is dim beside what they have brighter.
+    void setDimness(const std::vector<Region>& regions, const std::vector<std::array<Moments, 3>>& truth)
+    {
+        double brightest = 0;
+        for (size_t i = 0; i < regions.size(); ++i)
+            if (regions[i].pixels.size() == 1)
+                for (const Moments& channel : truth[i]) brightest = std::max(brightest, channel.mean());
+        dimness_ = brightest > 0 ? std::min(truth[region_][channel_].mean() / brightest, 1.0) : 1;
     }
 
     bool repeats()
@@ -269,6 +290,7 @@ class Examination
     bool pathTracing_, reference_;
     uint64_t runs_ = 0, frames_ = 0, samples_ = 0; // of the first stage
     size_t region_ = 0, channel_ = 0;              // what it named
+    double dimness_ = 1;                           // of that, beside the brightest pixel
     uint64_t growth_ = 1;                          // of the samples since then
 };
 

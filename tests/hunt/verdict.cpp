@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace hunt
 {
@@ -27,6 +28,16 @@ Estimate winsorized(std::vector<double> values, double share)
     const double highest = values[values.size() - rare - 1];
     for (double& value : values) value = std::min(value, highest);
     return estimateOf(values);
+}
+
+// What is likely to be missing from the mean: see UNSEEN_TAIL. Of the largest values the one that says most counts.
+double unseenTail(std::vector<double> values, double mean)
+{
+    const size_t looked = std::min<size_t>(values.size(), 4);
+    std::ranges::partial_sort(values, values.begin() + std::ptrdiff_t(looked), std::greater());
+    double most = 0;
+    for (size_t k = 0; k < looked; ++k) most = std::max(most, double(k + 1) * (values[k] - mean));
+    return values.empty() ? 0 : UNSEEN_TAIL * most / double(values.size());
 }
 
 } // namespace
@@ -57,11 +68,12 @@ Comparison compare(const Values& a, const Values& b, double level, double relati
     if (result.answer != Answer::Differ) return result;
     const bool aIsHigher = a.estimate.mean > b.estimate.mean;
     const Values &high = aIsHigher ? a : b, &low = aIsHigher ? b : a;
-    if (low.chances < ENOUGH_EVENTS) result.answer = Answer::Undecided;
-    if (high.values.empty() || result.answer == Answer::Undecided) return result;
-    const Estimate cut = winsorized(high.values, ENOUGH_EVENTS * high.reach / low.chances);
-    const bool still =
-        cut.mean > low.estimate.mean && compare(cut, low.estimate, level, relativeMargin).answer == Answer::Differ;
+    const Estimate brighter =
+        high.values.empty() ? high.estimate : winsorized(high.values, ENOUGH_EVENTS * high.reach / low.chances);
+    Estimate dimmer = low.estimate;
+    dimmer.mean += unseenTail(low.values, low.estimate.mean);
+    const bool still = low.chances >= ENOUGH_EVENTS && brighter.mean > dimmer.mean &&
+                       compare(brighter, dimmer, level, relativeMargin).answer == Answer::Differ;
     if (!still) result.answer = Answer::Undecided;
     return result;
 }

@@ -30,6 +30,10 @@ struct Values {
 // The events that a method is trusted to have met have happened so often, on average. With 60 of them the mean is known
 // to 13%, and a shortage that would pass for a difference of six standard errors is rarer than 1e-8.
 constexpr double ENOUGH_EVENTS = 60;
+// Resampling makes values x with a probability of order 1/x: a dim path of a bright pixel's tree is chosen rarely and
+// then counts much. Of such a law, the values beyond the largest of n seen hold, for each factor of e, as much as that
+// one over n does; here are 16 of them (10^7), twice, since the largest is a random number itself.
+constexpr double UNSEEN_TAIL = 32;
 
 enum class Answer { Agree, Undecided, Differ };
 struct Comparison {
@@ -39,12 +43,14 @@ struct Comparison {
     statistics::Difference difference;
 };
 
-// Differ: by more than `relativeMargin` of the larger mean at the level, and still so when the larger one's most rare
-// and bright values, those that the other can be expected to have met fewer than ENOUGH_EVENTS times, are cut to the
-// brightest of its other values. Undecided: by these values only.
+// Differ: by more than `relativeMargin` of the larger mean at the level, and still so when both are changed in favor of
+// agreement: the larger one's rare and bright values, those that the other can be expected to have met fewer than
+// ENOUGH_EVENTS times, cut to the brightest of its other values; and the smaller one's mean raised by the tail that its
+// own largest values let one expect. Undecided: without these changes only, or the smaller one's chances are too few
+// for any of this.
 Comparison compare(const Values& a, const Values& b, double level, double relativeMargin);
 
-// The first test, which knows moments only.
+// Of the means alone, as the first tests do.
 Comparison compare(const statistics::Estimate& a, const statistics::Estimate& b, double level, double relativeMargin);
 
 } // namespace hunt
