@@ -50,6 +50,18 @@ const std::vector<PlantedError>& plantedErrors()
         {"MissingGeometryTerm", "path/integrand.glsl", "abs(dot(at.geometricNormal, direction)) / squared;",
          "abs(dot(at.geometricNormal, direction));"},
         {"MissingDeparture", "path/trunk.glsl", "trunk.arrival * trunk.departure;", "trunk.arrival;"},
+        // Faults that the program had until they were mended, each taken out of its mend again.
+        {"SkyDecodedTwice", "scene/lights.glsl", "        vec4 environment = loadTexel(texel);\n",
+         "        texel.y = min(uint(acos(clamp(l.direction.y, -1.0, 1.0)) / PI * float(scene.environmentHeight)),\n"
+         "                      scene.environmentHeight - 1u);\n"
+         "        vec4 environment = loadTexel(texel);\n"},
+        {"WalksMeasuredFromTheSurface", "path/walk.glsl", "vec3 d = next.position - origin;",
+         "vec3 d = next.position - origin - 1.9073486e-6 * x.s.geometricNormal;"},
+        {"OffsetsByTheScenesSize", "lib/offset.glsl", "return 2.0 * POSITION_ERROR * dot(abs(geometricNormal), size);",
+         "return 8.0 * POSITION_ERROR;"},
+        {"PathsOnEdges", "scene/surface.glsl", "    if (leastWeight(barycentric) < g.clearance) {\n",
+         "    if (false) {\n"},
+        {"EdgesAskTwice", "scene/surface.glsl", "    if (all(meets)) return", "    if (true) return"},
     };
     return list;
 }

@@ -84,7 +84,7 @@ TEST(Contraction, IsForbiddenInEachOperationOfAllShadersAndNothingElseChanges)
 // As SPIRV-Tools simplifies them afterwards: what it makes of such operations may not be contracted either.
 TEST(Contraction, StaysForbiddenInSimplifiedShaders)
 {
-    const Words spirv = gpu::withoutContraction(gpu::loadShader("spatial_gather", false));
+    const Words spirv = gpu::withoutContraction(gpu::loadShader("temporal", false));
     const gpu::Constant reservoirs{"RESERVOIR_COUNT", 3u};
     const gpu::Reflection shader = gpu::reflect(spirv, "test", false, std::span(&reservoirs, 1));
     const Findings found = look(gpu::simplified(spirv, "test", shader.constants));
