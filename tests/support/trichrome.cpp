@@ -8,12 +8,6 @@
 namespace
 {
 
-std::string deviceName()
-{
-    const char* wanted = std::getenv("TRICHROME_TEST_DEVICE");
-    return wanted ? wanted : "llvmpipe";
-}
-
 // It lies beside the tests' own executables.
 std::filesystem::path executable(const std::string& name)
 {
@@ -26,6 +20,12 @@ bool isIn(const std::vector<std::string>& words, const std::string& word)
 }
 
 } // namespace
+
+std::string Trichrome::deviceName()
+{
+    const char* wanted = std::getenv("TRICHROME_TEST_DEVICE");
+    return wanted ? wanted : "llvmpipe";
+}
 
 Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter, int signal,
                        const std::string& program)

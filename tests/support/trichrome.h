@@ -8,6 +8,8 @@
 class Trichrome : public testing::Test
 {
   protected:
+    static std::string deviceName(); // part of it, as --device takes
+
     // Adds --device to commands that take it. Sends the signal (default: Ctrl-C) after a time above 0.
     static Outcome run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter = {},
                        int signal = SIGINT, const std::string& program = "trichrome");

@@ -40,7 +40,7 @@ std::vector<std::string> optionsOf(const ui::Command& command)
     return names;
 }
 
-const char* const NO_NUMBERS[] = {"nan", "NaN", "-nan", "nan(1)", "inf", "-inf", "Infinity", "1e999", "-1e999", "1,5"};
+const char* const NO_NUMBERS[] = {"nan", "NaN", "-nan", "nan(1)", "inf", "-inf", "Infinity", "1e999", "-1e999", "1x"};
 
 void expectRefusal(const std::string& said, const std::string& option, const std::string& value)
 {
