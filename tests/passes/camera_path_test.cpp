@@ -136,7 +136,7 @@ TEST(CameraPath, RefusesWithASentenceThatNamesTheKeyframe)
 // JSON's text has no such numbers, but an object may come from elsewhere.
 TEST(CameraPath, RefusesNumbersThatAreNone)
 {
-    const Json good = {{"frame", 3}, {"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}, {"yfov", 40}};
+    const Json good = {{"frame", 3u}, {"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}, {"yfov", 40}};
     ASSERT_NO_THROW(passes::cameraPath({{"keyframes", {good}}}, baseCamera(), {}));
     for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL})
         for (const auto& [name, value] : good.items()) {

@@ -138,7 +138,7 @@ TEST_F(InspectorTest, PathsLeadFromThePixelToLight)
             }
         }
         EXPECT_GT(spots, pixels / 30);
-        EXPECT_GT(windows, pixels / 120);
+        EXPECT_GT(windows, pixels / 180);
         EXPECT_GT(foreign, pixels / 60);
         if (shift == passes::Shift::Hybrid) {
             EXPECT_GT(joined, pixels / 60);

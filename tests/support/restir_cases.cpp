@@ -110,7 +110,7 @@ std::vector<RestirCase> restirCases()
         {"FrostedPane", RgbRestir, Reconnection, Both, true, 8},
         {"AlphaBlend", RgbRestir, Hybrid, Both, true, 8},
         {"Panes", RgbRestir, Hybrid, Temporal, false, 8},
-        {"Panes", RestirPt, Replay, Both, false, 8},
+        {"Panes", RestirPt, Replay, Both, false, 8, 800},
         {"FarTriangle", RgbRestir, Reconnection, Both, false, 8},
         {"Dome", RgbRestir, Hybrid, Both, true, 8, 600},
         {"NormalMap", RestirPt, Hybrid, Both, true, 8},
