@@ -142,6 +142,12 @@ float loadCoverage(uint material, uint row, vec2 barycentric, Coordinates at)
     return (flags & MATERIAL_MASK) != 0u ? float(alpha >= cutoff) : min(alpha, 1.0);
 }
 
+// Is it asked whether it exists?
+bool isAsked(TriangleGeometry g)
+{
+    return (FETCH(SceneData, materialRow(g.material) + 1u).w & (MATERIAL_MASK | MATERIAL_BLEND)) != 0u;
+}
+
 // What decides whether a translucent surface exists for a ray: independent for each triangle, but where the ray meets an edge
 // or a vertex all triangles around it decide as one. A ray exactly along an edge asks both of its triangles, and would
 // meet alpha twice.
