@@ -64,9 +64,7 @@ TEST(Files, WhatIsNoFileIsWrittenToAndStays)
     std::vector<std::byte> got(3);
     EXPECT_EQ(read(reader, got.data(), 3), 2);
     close(reader);
-    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
-    files::writeAtomically("/dev/null", BYTES);
-    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe")); // as /dev/null would be, which a failure must not cost
 }
 
 TEST(Files, OneFileIsKnownByAllItsNames)

@@ -5,7 +5,10 @@
 #include "engine/image/image.h"
 #include "tests/support/tiny_gltf.h"
 
+#include <fcntl.h>
 #include <map>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace std::chrono_literals;
 
@@ -142,8 +145,15 @@ TEST_F(Render, ALinkIsWrittenThroughAndADeviceWrittenTo)
     runWell(small(link, {"--frames", "1"}));
     EXPECT_TRUE(std::filesystem::is_symlink(link));
     EXPECT_EQ(pixels(out).size(), 32u * 18u);
-    runWell(small(directory / "out.PNG", {"--frames", "1", "--stats", "/dev/null"}));
-    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    const std::string pipe = directory / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    runWell(small(directory / "out.PNG", {"--frames", "1", "--stats", pipe}));
+    char first = 0;
+    EXPECT_EQ(read(reader, &first, 1), 1);
+    EXPECT_EQ(first, '{');
+    close(reader);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
     EXPECT_EQ(pixels(directory / "out.PNG").size(), 32u * 18u);
 }
 
