@@ -295,7 +295,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             LOOP_END(records == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
 
             LOOP_BEGIN(records != 0u && !asks)
-                bool valid = records != 0u;
+                bool valid = records != 0u && !asks; // a lane that has left to ask must keep what it asks (lib/loop.glsl)
                 uint earlier = masks & ((records & (0u - records)) - 1u); // mask bits below the lowest
                 uint record = valid ? BVH_RECORD_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
                 records &= records - 1u;

@@ -64,13 +64,16 @@ vec3 pointOn(TriangleGeometry g, vec2 barycentric)
 
 vec3 hitPosition(uint triangle, vec2 barycentric) { return pointOn(loadTriangle(triangle), barycentric); }
 
+vec3 sizeOf(TriangleGeometry g) { return max(abs(g.p0), max(abs(g.p1), abs(g.p2))); } // by axis
+
+float largestCoordinate(TriangleGeometry g) { return maxComponent(sizeOf(g)); }
+
 // How far from its plane rays begin that leave the triangle there. Near its edges they must pass clear of what lies beyond,
 // too, which is known as exactly as the largest coordinate.
 float offsetOf(TriangleGeometry g, vec2 barycentric)
 {
-    vec3 size = max(abs(g.p0), max(abs(g.p1), abs(g.p2)));
     bool nearEdge = leastWeight(barycentric) < 2.0 * g.clearance;
-    return nearEdge ? originOffset(vec3(1.0, 0.0, 0.0), vec3(maxComponent(size))) : originOffset(normalize(g.areaNormal), size);
+    return nearEdge ? originOffset(vec3(1.0, 0.0, 0.0), vec3(largestCoordinate(g))) : originOffset(normalize(g.areaNormal), sizeOf(g));
 }
 
 // ------------------------------------------------------------------------------------------------------ what lies on it
@@ -155,11 +158,11 @@ uvec4 alphaKey(uint triangle, TriangleGeometry g, vec2 barycentric)
 {
     const float ON_EDGE = 2.384185791015625e-7; // 2^-22: rounding of a weight that is 0
     bvec3 meets = greaterThan(vec3(1.0 - barycentric.x - barycentric.y, barycentric), vec3(ON_EDGE));
-    if (all(meets)) return uvec4(triangle, 0u, 0u, 0u);
     // A sum of the ends, whichever is first; + 0.0 makes one zero of two.
-    return uvec4((meets.x ? floatBitsToUint(g.p0 + 0.0) : uvec3(0u)) + (meets.y ? floatBitsToUint(g.p1 + 0.0) : uvec3(0u)) +
-                     (meets.z ? floatBitsToUint(g.p2 + 0.0) : uvec3(0u)),
-                 1u);
+    uvec3 ends = mix(uvec3(0u), floatBitsToUint(g.p0 + 0.0), bvec3(meets.x)) +
+                 mix(uvec3(0u), floatBitsToUint(g.p1 + 0.0), bvec3(meets.y)) +
+                 mix(uvec3(0u), floatBitsToUint(g.p2 + 0.0), bvec3(meets.z));
+    return all(meets) ? uvec4(triangle, 0u, 0u, 0u) : uvec4(ends, 1u);
 }
 
 // Does it exist for this ray? Called by traversal for triangles flagged so at build time.

@@ -61,7 +61,7 @@ const std::vector<PlantedError>& plantedErrors()
          "return 8.0 * POSITION_ERROR;"},
         {"PathsOnEdges", "scene/surface.glsl", "    if (leastWeight(barycentric) < g.clearance) {\n",
          "    if (false) {\n"},
-        {"EdgesAskTwice", "scene/surface.glsl", "    if (all(meets)) return", "    if (true) return"},
+        {"EdgesAskTwice", "scene/surface.glsl", "return all(meets) ?", "return true ?"},
     };
     return list;
 }
