@@ -261,8 +261,9 @@ void sealed(Builder& b)
     if (b.palette.sky) b.scene.environment = {1, 1, {draw.color() * float(draw.logBetween(1, 1e4))}};
     const dvec3 eye =
         symmetric ? dvec3(0, 0, draw.of({0.0, 0.0, 0.25, 0.5}) * double(size)) : dvec3(draw.point(-0.25, 0.25) * size);
-    const dvec3 at = symmetric ? dvec3(0, 0, -double(size)) : eye + dvec3(draw.direction());
-    b.look(eye, at, symmetric ? draw.of({45.0, 60.0, 90.0, 90.0, 120.0}) : draw.between(30, 120));
+    // A hundredth of the size ahead: a camera that goes round it and a parallel one's picture stay inside.
+    const dvec3 ahead = 0.01 * double(size) * (symmetric ? dvec3(0, 0, -1) : dvec3(draw.direction()));
+    b.look(eye, eye + ahead, symmetric ? draw.of({45.0, 60.0, 90.0, 90.0, 120.0}) : draw.between(30, 120));
 }
 
 void edges(Builder& b)
