@@ -113,7 +113,9 @@ class Bsdf : public GpuTest
     {
         for (const NamedMaterial& m : materials()) {
             use(m.material);
-            for (const dvec3& view : {direction(1, 0), direction(0.7, 1), direction(0.1, 4), direction(-0.5, 2)}) {
+            std::vector<dvec3> views = {direction(0.1, 4), direction(-0.5, 2), direction(1, 0), direction(0.7, 1)};
+            if (isSlow(device())) views.resize(2); // minutes otherwise
+            for (const dvec3& view : views) {
                 SCOPED_TRACE(testing::Message() << m.name << " seen at cosine " << view.y);
                 check(dvec3(glm::normalize(glm::vec3(view)))); // as float32 has it
             }

@@ -98,6 +98,9 @@ class ToyPlantedErrors : public GpuTest, public testing::WithParamInterface<ToyE
 TEST_P(ToyPlantedErrors, AreFound)
 {
     const ToyError& error = GetParam();
+    if (isSlow(device()) && error.name != std::string("MissingJacobian"))
+        GTEST_SKIP()
+            << "SKIPPED ON SwiftShader: whether the toy notices is a question about the toy, not about drivers";
     PlantedShaders shaders(std::string("toy_") + error.name);
     for (const char* contract : {"integrand.glsl", "candidates.glsl", "toy.glsl", "toy.h"})
         std::filesystem::copy(std::filesystem::path(TRICHROME_SOURCE_DIR "/tests/shaders/toy") / contract,
