@@ -2,6 +2,7 @@
 // small and written as files with the command lines that show it.
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -80,6 +81,7 @@ class Hunt
   private:
     static constexpr uint64_t VALIDATED = 8, REPEATED = 8; // every so many sessions, cases
     static constexpr uint64_t SHRUNK = 2;                  // of what looks alike
+    static constexpr double SAME_GAP = 0.05;               // of the first find's: a smaller one shows something else
 
     bool over() const
     {
@@ -122,8 +124,9 @@ class Hunt
         uint64_t tries = 0;
         const auto fails = [&](const Case& smaller) {
             const hunt::Effort effort = {.factor = 2, .stages = 2, .firstLevel = 1e-5};
-            return hunt::examine(place.device, place.pipelines, smaller, seedOf(c) + ++tries, effort).fault ==
-                   finding.fault;
+            const Finding now = hunt::examine(place.device, place.pipelines, smaller, seedOf(c) + ++tries, effort);
+            return now.fault == finding.fault &&
+                   std::abs(now.tried - now.truth) >= SAME_GAP * std::abs(finding.tried - finding.truth);
         };
         const Case small = hunt::shrink(c, fails, [&] { return secondsSince(start) > options_.shrinkSeconds; });
         const std::string stem =

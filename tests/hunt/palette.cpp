@@ -153,6 +153,7 @@ void Palette::addAttributes(Scene& scene, Draw& draw) const
     const bool coordinates = textured() || has(Stuff::Mask);
     const float scale = float(draw.logBetween(0.3, 3));
     const vec2 shift(draw.between(-1, 1), draw.between(-1, 1));
+    const float handedness = draw.of({-1.0f, 1.0f}); // one: the vertices of a triangle have to agree
     for (size_t i = 0; i < scene.positions.size(); ++i) {
         const vec3 p = scene.positions[i], n = scene.normals[i];
         const vec3 tangent = glm::normalize(std::abs(n.x) < 0.7f ? vec3(1, 0, 0) - n.x * n : vec3(0, 1, 0) - n.y * n);
@@ -160,7 +161,7 @@ void Palette::addAttributes(Scene& scene, Draw& draw) const
             const vec2 on(dot(p, tangent), dot(p, cross(n, tangent)));
             scene.uv0.push_back(scale * on + shift);
             if (secondUv) scene.uv1.push_back(vec2(on.y - on.x, on.x) * 0.7f - shift);
-            scene.tangents.push_back(vec4(tangent, i % 8 < 4 ? 1 : -1));
+            scene.tangents.push_back(vec4(tangent, handedness));
         }
         // Halves on the device: eighths are exact there.
         if (vertexColors)
