@@ -41,9 +41,7 @@ def options_of(lines):
 
 def item(option):
     name = ", ".join(f"`{part}`" for part in option.name.split(","))
-    values = f" {option.values}" if option.values else ""
-    text = re.sub(r"([<>*_|])", r"\\\1", option.text)
-    return f"- {name}" + re.sub(r"([<>*_|])", r"\\\1", values) + f"\n  {text}\n"
+    return re.sub(r"(?<!`)([<>*_|])", r"\\\1", f"- {name} {option.values}".rstrip() + f"\n  {option.text}\n")
 
 
 def page(program):
@@ -59,7 +57,8 @@ def page(program):
 
     text = INTRODUCTION
     for command in commands:
-        text += f"\n## trichrome {command}\n\n{helps[command][0]}\n\n```\n{helps[command][1].removeprefix('Usage: ')}\n```\n\n"
+        doc, usage = helps[command][:2]
+        text += f"\n## trichrome {command}\n\n{doc}\n\n```\n{usage.removeprefix('Usage: ')}\n```\n\n"
         mine = [o for o in options[command] if (o.name, o.text) not in shared]
         text += "".join(item(o) for o in mine)
         common = [o for o in options[command] if (o.name, o.text) in shared]
@@ -68,7 +67,8 @@ def page(program):
             text += f"\nBesides, shared options from [below](#shared-options): {', '.join(groups)}.\n"
         other = [o for o in common if o.values != shared[o.name, o.text][0][1].values]
         if other:
-            text += "Other defaults here: " + ", ".join(f"`{o.name}` {o.values.rsplit('(')[-1][:-1]}" for o in other) + ".\n"
+            defaults = [f"`{o.name}` {o.values.rsplit('(')[-1].removesuffix(')')}" for o in other]
+            text += f"Other defaults here: {', '.join(defaults)}.\n"
         epilog = [line for line in helps[command][-3:] if line and not line.startswith(" ")]
         if epilog:
             text += "\n" + " ".join(epilog) + "\n"
@@ -87,7 +87,7 @@ def main():
     if "--write" in sys.argv:
         PAGE.write_text(wanted, encoding="utf-8")
     elif not PAGE.exists() or PAGE.read_text(encoding="utf-8") != wanted:
-        sys.exit(f"docs/COMMANDS.md is not what {sys.argv[1]} --help says; write it anew: {sys.argv[0]} {sys.argv[1]} --write")
+        sys.exit(f"docs/COMMANDS.md is not what --help says; write it anew: {sys.argv[0]} {sys.argv[1]} --write")
     print(f"{PAGE} is what the program says")
 
 
