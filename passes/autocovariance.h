@@ -1,6 +1,6 @@
 #pragma once
 // The paper's experiment: how strongly the frames M-1 and M of temporal reuse depend on each other, over independent
-// runs, and what the closed form says about it (ARCHITECTURE.md, "Decisions about correlate").
+// runs, and what the closed form says about it (docs/DECISIONS.md, "Measuring").
 
 #include <array>
 #include <functional>

@@ -242,7 +242,7 @@ struct DeviceState {
     std::mutex setLayoutsMutex; // pipelines are created by several threads
     std::map<std::map<uint32_t, VkDescriptorType>, VkDescriptorSetLayout> setLayouts;
 
-    // Replaceable, so that a test can lose the device. (tests/support/faults.cpp makes any call fail.)
+    // Replaceable, so that a test can lose the device. (tests/faults/faulty_calls.cpp makes any call fail.)
     PFN_vkQueueSubmit queueSubmit = vkQueueSubmit;
     PFN_vkWaitSemaphores waitSemaphores = vkWaitSemaphores;
     PFN_vkCmdBeginDebugUtilsLabelEXT beginLabel = nullptr;

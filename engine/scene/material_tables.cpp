@@ -15,7 +15,7 @@ namespace
 
 // As in shaders/scene/bsdf.glsl: below, specular lobes are Dirac.
 constexpr float DIRAC_ROUGHNESS = 1.0f / 64.0f;
-// A solid body of almost the index of air bends nothing: it is thin and clear (ARCHITECTURE.md).
+// A solid body of almost the index of air bends nothing: it is thin and clear (docs/LIGHT_TRANSPORT.md).
 constexpr float INDEX_OF_AIR = 1.0f / 1024.0f;
 
 glm::uvec4 row(float x, float y, float z, float w)

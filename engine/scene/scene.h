@@ -44,7 +44,7 @@ struct TextureUse {
 
 enum class Alpha : uint32_t { Opaque, Mask, Blend };
 
-// glTF 2.0 metallic-roughness. ARCHITECTURE.md, "Light transport model", says what each number means to the integral.
+// glTF 2.0 metallic-roughness. docs/LIGHT_TRANSPORT.md says what each number means to the integral.
 struct Material {
     std::string name;
     glm::vec4 baseColor = {1, 1, 1, 1}; // linear; a is alpha

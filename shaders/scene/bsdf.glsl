@@ -1,4 +1,4 @@
-// Scattering at a surface: ARCHITECTURE.md, "Light transport model". Three lobes (diffuse, specular reflection, transmission),
+// Scattering at a surface: docs/LIGHT_TRANSPORT.md. Three lobes (diffuse, specular reflection, transmission),
 // evaluated as one sum, sampled as one mixture. Directions are in the local frame of n_s unless named world.
 #ifndef SHADERS_SCENE_BSDF_GLSL
 #define SHADERS_SCENE_BSDF_GLSL

@@ -82,7 +82,7 @@ TEST_F(ClosedForms, GgxReflectsItsAlbedo)
         }
 }
 
-// A closed body of clear glass under a white sky is as bright as the sky (ARCHITECTURE.md: eta^2 is left out).
+// A closed body of clear glass under a white sky is as bright as the sky (docs/LIGHT_TRANSPORT.md: eta^2 is left out).
 TEST_F(ClosedForms, ClearGlassUnderAWhiteSkyIsInvisible)
 {
     ClosedForm form = ggxUnderWhiteSky(32, 0, 0.5);

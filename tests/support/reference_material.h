@@ -1,6 +1,6 @@
 #pragma once
-// Surfaces and their scattering, in float64, for the reference tracer. Written from ARCHITECTURE.md, "Light transport
-// model", alone: whatever the shaders have in common with this file, they have from that text.
+// Surfaces and their scattering, in float64, for the reference tracer. Written from
+// docs/LIGHT_TRANSPORT.md alone: whatever the shaders have in common with this file, they have from that text.
 
 #include <random>
 

@@ -1,6 +1,6 @@
 #pragma once
 // A path tracer of the same integral as the shaders, in float64, brute force over the triangles: slow, small, written
-// from ARCHITECTURE.md, "Light transport model", alone. For scenes of some dozens of triangles.
+// from docs/LIGHT_TRANSPORT.md alone. For scenes of some dozens of triangles.
 
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"

@@ -24,7 +24,8 @@ constexpr int CROP_SHOWN = 240;               // pixels on the screen
 
 constexpr const char* STYLE = R"(<style>
 .maps { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 0 1rem; }
-.maps img { width: 100%; image-rendering: pixelated; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(24rem, 1fr)); gap: 0 1rem; }
+.maps img, .pictures img { width: 100%; image-rendering: pixelated; }
 .crops { display: flex; flex-wrap: wrap; gap: .3rem 1rem; } .crops figure { margin: .3rem 0; }
 .crops img { image-rendering: pixelated; border: 1px solid #aab3c5; }
 .scale { white-space: nowrap; }
@@ -78,6 +79,17 @@ image::Plane relativeDifferenceOf(const image::Image& reference, const image::Im
         result.values.push_back((mean(picture.pixels[i]) - r) / (std::abs(r) + image::RELATIVE_EPSILON));
     }
     return result;
+}
+
+// All of them at a glance; the first is the reference.
+void addPictures(Page& page, const std::vector<ViewerPicture>& shown, const std::vector<ComparedPicture>& pictures)
+{
+    std::string html = figure(shown.front().png, escapeHtml(shown.front().name) + ", the reference");
+    for (size_t i = 0; i < pictures.size(); ++i)
+        html += figure(shown[i + 1].png,
+                       fmt::format("{}: PSNR {:.2f} dB, relative MSE {:.3g}", escapeHtml(pictures[i].file),
+                                   pictures[i].metrics.psnr, pictures[i].metrics.relmse));
+    page.raw("<div class=\"pictures\">\n" + html + "</div>\n");
 }
 
 void addMaps(Page& page, const image::Image& reference, const image::Image& picture, const image::Plane& flip)
@@ -186,6 +198,7 @@ std::string comparisonPage(const ComparedPicture& reference, const std::vector<C
     for (const std::string& warning : reference.loaded.warnings) page.paragraph(warning);
     for (const ComparedPicture& picture : pictures)
         for (const std::string& warning : picture.loaded.warnings) page.paragraph(warning);
+    addPictures(page, shown, pictures);
     page.raw(viewerHtml(shown));
     for (const ComparedPicture& picture : pictures) {
         page.heading(picture.file);

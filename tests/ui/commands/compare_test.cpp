@@ -124,7 +124,7 @@ TEST_F(Compare, IsAGateThatNamesImageFigureAndLimit)
     EXPECT_EQ(list[1]["gates"][1]["limit"], 90);
 }
 
-TEST_F(Compare, ThePageListsTheSettingsThatDiffer)
+TEST_F(Compare, ThePageShowsThePicturesAndListsTheSettingsThatDiffer)
 {
     const std::string page = directory / "page.html";
     runWell({"compare", first(), second(), "--html", page});
@@ -132,6 +132,8 @@ TEST_F(Compare, ThePageListsTheSettingsThatDiffer)
     EXPECT_NE(html.find("<td>method</td><td>pt</td><td>rgb-restir</td>"), std::string::npos);
     EXPECT_NE(html.find("<td>frames</td><td>&lt;b&gt;64</td><td></td>"), std::string::npos);
     EXPECT_EQ(html.find("<td>seed</td>"), std::string::npos);
+    EXPECT_NE(html.find("first.exr, the reference</figcaption>"), std::string::npos);
+    EXPECT_NE(html.find("second.exr: PSNR "), std::string::npos);
     EXPECT_EQ(html.find("http:"), std::string::npos);
     EXPECT_EQ(html.find("https:"), std::string::npos);
 }

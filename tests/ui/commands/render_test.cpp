@@ -318,7 +318,7 @@ TEST_F(Render, AMovingCameraWritesItsLastFrameFromWhereItIsThen)
     EXPECT_NE(pixels(still), b);
 }
 
-// ARCHITECTURE.md, Environment: which way a sky's columns and rows lie, and that it is not mirrored.
+// docs/LIGHT_TRANSPORT.md, Environment: which way a sky's columns and rows lie, and that it is not mirrored.
 TEST_F(Render, ASkyLiesAsDocumented)
 {
     const std::string scene = directory / "scene.gltf", sky = directory / "sky.exr", out = directory / "out.exr",
