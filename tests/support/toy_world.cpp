@@ -125,6 +125,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     variant.RESERVOIR_COUNT = uint32_t(estimator.target.size());
     variant.SHIFT_MAP = uint32_t(shift);
     variant.COLOR_READING = uint32_t(color);
+    variant.ONE_CHANNEL = passes::oneHot(estimator);
     constants_ = passes::constants(variant);
 
     const uint64_t pixels = uint64_t{runs} * SIZE * SIZE, count = estimator.target.size();
