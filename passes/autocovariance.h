@@ -97,7 +97,7 @@ std::array<glm::vec3, 3> resolvingTargets(Method method);
 Settings lawSettings(Settings settings);
 
 // Whether the law of the chain holds: temporal reuse alone, every pixel seeing the same point in each frame (the camera
-// rests, and Renderer::viewRepeats()).
+// rests, and SceneOnDevice::viewRepeats()).
 bool lawHolds(const Settings& settings, bool sameView);
 
 // Whether every channel has a reservoir of its own, so that a resting camera's chain is the mean of the path tracer's

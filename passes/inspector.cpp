@@ -9,10 +9,11 @@ Inspector::Inspector(Renderer& renderer)
 {
 }
 
-void Inspector::prepare(Tool& tool, const char* stage, const char* result, uint64_t bytes)
+void Inspector::prepare(Tool& tool, const char* stage, const char* result, uint64_t bytes, gpu::Usage usage)
 {
     if (tool.stage) return;
-    tool.result = renderer_.device().createBuffer({.label = result, .size = bytes, .setting = "--size"});
+    tool.result =
+        renderer_.device().createBuffer({.label = result, .size = bytes, .usage = usage, .setting = "--size"});
     tool.stage = renderer_.makeStage(stage, renderer_.variant(), {{result, &tool.result}, {"Request", &request_}});
 }
 
@@ -42,19 +43,22 @@ std::vector<ShiftCounts> Inspector::shifts()
     const Settings& settings = renderer_.settings();
     if (settings.method == Method::Pt || settings.spatial == 0) return {};
     const uint64_t pixels = uint64_t{settings.width} * settings.height;
-    prepare(shifts_, "inspect_shifts", "ShiftCounts", pixels * settings.spatial * sizeof(ShiftCounts));
+    constexpr size_t WORDS = 8; // of a pixel and slot: the outcomes, in two rows
+    prepare(shifts_, "inspect_shifts", "ShiftCounts", pixels * settings.spatial * WORDS * sizeof(uint32_t));
     run(shifts_, {settings.width, settings.height, settings.spatial});
-    const std::vector<uint32_t> planes = renderer_.device().queue().readAs<uint32_t>(shifts_.result);
+    const std::vector<uint32_t> words = renderer_.device().queue().readAs<uint32_t>(shifts_.result);
     std::vector<ShiftCounts> counts(pixels, ShiftCounts{});
-    for (size_t i = 0; i < planes.size(); ++i) counts[i % pixels][i / pixels % shared::SHIFT_OUTCOMES] += planes[i];
+    for (size_t i = 0; i < words.size(); ++i)
+        if (i % WORDS < shared::SHIFT_OUTCOMES) counts[i / WORDS % pixels][i % WORDS] += words[i];
     return counts;
 }
 
 std::vector<std::vector<shared::PathPoint>> Inspector::paths(uint32_t pixel)
 {
-    const Variant& variant = renderer_.variant();
+    const Variant variant = renderer_.variant();
     const size_t points = variant.MAX_BOUNCES + 1; // as in the shader
-    prepare(paths_, "inspect_path", "PathPoints", variant.RESERVOIR_COUNT * points * sizeof(shared::PathPoint));
+    prepare(paths_, "inspect_path", "PathPoints", variant.RESERVOIR_COUNT * points * sizeof(shared::PathPoint),
+            gpu::Usage::Storage);
     const bool plain = renderer_.settings().method == Method::Pt;
     renderer_.device().queue().writeValue(request_, shared::PathRequest{.pixel = pixel, .plain = plain});
     run(paths_, {variant.RESERVOIR_COUNT});

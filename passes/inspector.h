@@ -35,7 +35,8 @@ class Inspector
         std::unique_ptr<Stage> stage;
         gpu::Buffer result;
     };
-    void prepare(Tool& tool, const char* stage, const char* result, uint64_t bytes);
+    void prepare(Tool& tool, const char* stage, const char* result, uint64_t bytes,
+                 gpu::Usage usage = gpu::Usage::Table);
     void run(const Tool& tool, gpu::Threads threads);
 
     Renderer& renderer_;

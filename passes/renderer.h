@@ -1,7 +1,6 @@
 #pragma once
-// Renders frames of one scene with one set of settings. encodeFrame() is the page to read first.
+// Renders frames of one scene with one set of settings. framePlan() is the page to read first (passes/frame_plan.cpp).
 
-#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -12,12 +11,12 @@
 
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
-#include "engine/scene/gpu_scene.h"
 #include "engine/scene/scene.h"
+#include "passes/frame_buffers.h"
+#include "passes/frame_plan.h"
+#include "passes/scene_on_device.h"
 #include "passes/settings.h"
 #include "passes/stage.h"
-#include "passes/variant.h"
-#include "shaders/shared/frame.h"
 
 namespace passes
 {
@@ -66,9 +65,6 @@ class Renderer
     // must be the sibling's.
     Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
-    // How many runs of the picture fit a device's largest binding.
-    static uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings);
-
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
     uint32_t runs() const { return runs_; }
@@ -90,57 +86,45 @@ class Renderer
     std::vector<uint32_t> readPreviousPixels();
     RenderStats stats(); // waits
 
-    // What frames with these settings compile, for those who compile ahead: shaders and their constants.
-    std::vector<std::pair<std::string, Variant>> stagesFor(const Settings& settings, bool cameraMoves = false) const;
     // A stage of the caller's own over what frames leave behind, and over `more`; it lives until apply().
     std::unique_ptr<Stage> makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more = {});
-    // Whether every pixel sees the same point in each frame while the camera rests.
-    bool viewRepeats(const Settings& settings) const;
-    const Variant& variant() const { return variant_; }
-    const std::shared_ptr<PipelinePool>& pipelines() { return pipelines_; }
+    const SceneOnDevice& scene() const { return *scene_; }
+    Variant variant() const { return scene_->variant(settings_); }
+    const std::shared_ptr<PipelinePool>& pipelines() { return scene_->pipelines; }
     gpu::Device& device() { return device_; }
     // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
     // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit.
     RendererState save(); // waits
     void restore(const RendererState& state);
-    uint64_t sceneFingerprint() const { return sceneFingerprint_; } // geometry, materials, lights, first camera
 
   private:
     void createBuffers();
     void createStages();
-    const Stage& temporal();
+    const Stage& planned(size_t i);
     bool seesTheSame(const std::optional<shared::CameraUniform>& from) const;
     void tune();
-    void encodeFrame(gpu::CommandEncoder& encoder);
+    void encodeFrame(gpu::CommandEncoder& encoder, const FrameState& state);
     void collectTimings();
     uint32_t pictureHeight() const { return settings_.height * runs_; }
-    std::vector<gpu::Buffer*> lastingBuffers();
+    std::vector<const gpu::Buffer*> lastingBuffers() const;
 
     gpu::Device& device_;
     Settings settings_;
-    scene::FeatureSet featureSet_;
     uint32_t runs_;
-    scene::SceneFeatures sceneFeatures_;
-    bool orthographic_ = false;
-    double lengthScale_ = 1, radianceScale_ = 1;
-    uint64_t sceneFingerprint_ = 0;
-    Variant variant_;
-    RenderStats stats_;
-    shared::FrameUniform frame_ = {};
-    std::optional<shared::CameraUniform> hitsFrom_; // the camera that the frame's half of surfaces_ was traced from
-    bool hitsKnown_ = false;                        // ahead of the frame: primary is left out
-    uint64_t frameCount_ = 0, timedFrames_ = 0;
-    uint64_t historyFrames_ = 0;                 // frames of reservoirs that the next frame may reuse
-    std::map<std::string, double> milliseconds_; // summed over timedFrames_
-    std::deque<gpu::Submission> inFlight_;
+    std::shared_ptr<const SceneOnDevice> scene_;
+    gpu::Buffer frameUniform_, counters_, previousPixels_;
+    FrameBuffers buffers_;
+    FramePlan plan_;
+    std::vector<std::unique_ptr<Stage>> stages_; // of the plan; null until needed
+    std::unique_ptr<Stage> reproject_;
+    double compileSeconds_ = 0;
 
-    std::shared_ptr<PipelinePool> pipelines_;
-    std::shared_ptr<const scene::GpuScene> scene_;
-    gpu::Buffer frameUniform_, counters_, surfaces_, color_, film_;
-    gpu::Buffer reservoirs_, reservoirPaths_, history_, historyPaths_, neighbors_, shifted_, mergedColor_,
-        previousPixels_;
-    std::unique_ptr<Stage> primary_, pathTrace_, canonical_, temporalResting_, temporalMoving_, spatialTrace_,
-        spatialGather_, accumulate_, reproject_;
+    shared::FrameUniform frame_ = {};
+    std::optional<shared::CameraUniform> hitsFrom_; // the camera that the frame's half of Surfaces was traced from
+    uint64_t frameCount_ = 0, historyFrames_ = 0;   // the latter of reservoirs that the next frame may reuse
+    std::map<std::string, double> milliseconds_;    // summed over timedFrames_
+    uint64_t timedFrames_ = 0;
+    std::deque<gpu::Submission> inFlight_;
 };
 
 } // namespace passes

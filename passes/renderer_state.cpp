@@ -9,11 +9,11 @@
 namespace passes
 {
 
-// What a frame leaves behind. All other buffers are written before they are read within each frame.
-std::vector<gpu::Buffer*> Renderer::lastingBuffers()
+std::vector<const gpu::Buffer*> Renderer::lastingBuffers() const
 {
-    if (settings_.method == Method::Pt) return {&counters_, &film_, &color_};
-    return {&counters_, &film_, &color_, &surfaces_, &history_, &historyPaths_};
+    std::vector<const gpu::Buffer*> list = buffers_.lasting();
+    list.insert(list.begin(), &counters_);
+    return list;
 }
 
 RendererState Renderer::save()
@@ -25,7 +25,7 @@ RendererState Renderer::save()
                         .previousCamera = frame_.previousCamera};
     for (const gpu::Buffer* buffer : lastingBuffers()) {
         std::vector<std::byte> bytes = device_.queue().read(*buffer);
-        if (buffer == &surfaces_ && frame_.slice == 1) // the last frame's half goes first
+        if (buffer == &buffers_["Surfaces"] && frame_.slice == 1) // the last frame's half goes first
             std::rotate(bytes.begin(), bytes.begin() + std::ptrdiff_t(bytes.size() / 2), bytes.end());
         state.buffers.emplace_back(buffer->label(), std::move(bytes));
     }
@@ -34,7 +34,7 @@ RendererState Renderer::save()
 
 void Renderer::restore(const RendererState& state)
 {
-    const std::vector<gpu::Buffer*> buffers = lastingBuffers();
+    const std::vector<const gpu::Buffer*> buffers = lastingBuffers();
     if (state.buffers.size() != buffers.size())
         throw Error("A state of {} buffers does not fit a renderer that keeps {}.", state.buffers.size(),
                     buffers.size());
@@ -52,7 +52,8 @@ void Renderer::restore(const RendererState& state)
     frame_.previousCamera = state.previousCamera;
     frame_.slice = 0; // save() has put the last frame's half of surfaces_ there
     hitsFrom_.reset();
-    if (frameCount_ > 0 && std::ranges::find(buffers, &surfaces_) != buffers.end()) hitsFrom_ = state.previousCamera;
+    if (frameCount_ > 0 && std::ranges::find(buffers, &buffers_["Surfaces"]) != buffers.end())
+        hitsFrom_ = state.previousCamera;
 }
 
 } // namespace passes

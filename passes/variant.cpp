@@ -41,6 +41,7 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
         v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
         v.SHIFT_MAP = uint32_t(settings.shift);
         v.COLOR_READING = uint32_t(colorReading(settings));
+        v.ONE_CHANNEL = oneHot(estimatorOf(settings.method));
     }
     v.HAS_ALPHA = features.alpha;
     v.HAS_SPECULAR = features.specular;

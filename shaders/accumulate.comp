@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The film: per channel the sum of all frames and what rounding took from it (Kahan), exact to fp32 after 10^6 frames.
+#include "lib/table.glsl"
 #include "scene/bindings.glsl"
+#include "shared/rows.h"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) readonly buffer Color { vec4 color[]; };
-layout(set = SET_PASS, binding = 1, std430) buffer Film { vec4 film[]; }; // two a pixel: sum, carry
+TABLE(SET_PASS, 0, Color);
+TABLE_INOUT(SET_PASS, 1, Film);
 
 void main()
 {
@@ -12,10 +14,10 @@ void main()
     if (pixel.x >= frame.width || pixel.y >= frame.height) return;
     uint index = pixel.y * frame.width + pixel.x;
 
-    precise vec3 sum = film[2u * index].xyz;
-    precise vec3 value = color[index].xyz - film[2u * index + 1u].xyz;
+    precise vec3 sum = colorIn(Film, FILM_ROWS * index);
+    precise vec3 value = colorIn(Color, index) - colorIn(Film, FILM_ROWS * index + 1u);
     precise vec3 next = sum + value;
     precise vec3 carry = (next - sum) - value;
-    film[2u * index] = vec4(finiteOrCounted(next, STAGE_ACCUMULATE), 0.0);
-    film[2u * index + 1u] = vec4(carry, 0.0);
+    STORE(Film, FILM_ROWS * index, rowOf(finiteOrCounted(next, STAGE_ACCUMULATE)));
+    STORE(Film, FILM_ROWS * index + 1u, rowOf(carry));
 }

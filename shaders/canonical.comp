@@ -3,16 +3,18 @@
 // Stage 1. Walks one new path tree a pixel and offers every path to all of the pixel's reservoirs (Algorithm 1).
 #define STAGE STAGE_CANONICAL
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 1, std430) buffer Reservoirs { uvec4 reservoirs[]; };
-layout(set = SET_PASS, binding = 2, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
-layout(set = SET_PASS, binding = 3, std430) writeonly buffer Color { vec4 color[]; }; // seen directly; gather adds the rest
-layout(set = SET_PASS, binding = 4, std430) writeonly buffer MergedColor { vec4 mergedColor[]; };
+TABLE_OUT(SET_PASS, 1, Reservoirs);
+TABLE_OUT(SET_PASS, 2, ReservoirPaths);
+TABLE_OUT(SET_PASS, 3, Color); // seen directly; gather adds the rest
+TABLE_OUT(SET_PASS, 4, MergedColor);
+layout(set = SET_PASS, binding = 5, std430) writeonly buffer Confidences { uint confidences[]; };
 
 #include "candidates.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+STORE_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 
 Reservoir canonical[MAX_RESERVOIRS];
 vec3 allPaths = vec3(0.0); // of the tree: what the path tracer would add
@@ -39,9 +41,9 @@ void main()
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) canonical[c] = EMPTY;
     vec3 emission;
     bool seen = offerCandidates(PathSeed(frame.frame, index), pixel, emission);
-    color[index] = vec4(finiteOrCounted(emission, STAGE), 0.0);
-    if (COLOR_READING == COLOR_WEIGHTED) mergedColor[index] = vec4(allPaths, 0.0);
+    STORE(Color, index, rowOf(finiteOrCounted(emission, STAGE)));
+    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, index, rowOf(allPaths));
     storeReservoirs(index, canonical);
-    storeReservoirsConfidence(index, seen ? 1u : 0u); // also when no path carried light: that is news too
+    confidences[index] = seen ? 1u : 0u; // also when no path carried light: that is news too
     countCandidates();
 }

@@ -4,10 +4,11 @@
 // frame. What precedes the reconnection vertex x_r is replayed in the pixel's own domain. What follows it is replayed
 // from x_r: it knows nothing of the pixel that drew it.
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 #include "shared/inspection.h"
 layout(local_size_x = 8) in;
-layout(set = SET_PASS, binding = 1, std430) readonly buffer History { uvec4 history[]; };
-layout(set = SET_PASS, binding = 2, std430) readonly buffer HistoryPaths { uvec4 historyPaths[]; };
+TABLE(SET_PASS, 1, History);
+TABLE(SET_PASS, 2, HistoryPaths);
 layout(set = SET_PASS, binding = 3, std430) readonly buffer Request { PathRequest request; };
 layout(set = SET_PASS, binding = 4, std430) writeonly buffer PathPoints { PathPoint pathPoints[]; };
 
@@ -16,7 +17,7 @@ uint firstVertex = 1u;
 #include "path/surfaces.glsl"
 #include "path/walk.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(History, ELEMENT, history, historyPaths)
+LOAD_RESERVOIRS(History, History, HistoryPaths)
 
 const uint POINTS = MAX_BOUNCES + 1u; // x_1 .. and the light
 const float FAR = 4.0;                // scaled: beyond every scene

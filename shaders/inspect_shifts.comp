@@ -4,15 +4,17 @@
 // window; no stage of a frame.
 #define STAGE STAGE_SPATIAL_TRACE
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 1, std430) readonly buffer Reservoirs { uvec4 reservoirs[]; };
-layout(set = SET_PASS, binding = 2, std430) readonly buffer ReservoirPaths { uvec4 reservoirPaths[]; };
-layout(set = SET_PASS, binding = 3, std430) readonly buffer Neighbors { uint neighbors[]; };
-layout(set = SET_PASS, binding = 4, std430) writeonly buffer ShiftCounts { uint shiftCounts[]; }; // pixel, by slot and outcome
+TABLE(SET_PASS, 1, Reservoirs);
+TABLE(SET_PASS, 2, ReservoirPaths);
+TABLE(SET_PASS, 3, Shifted);
+TABLE_OUT(SET_PASS, 4, ShiftCounts); // two rows a pixel, by slot: a word for each outcome
 
 #include "integrand.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(Reservoirs, ELEMENT, reservoirs, reservoirPaths)
+LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
+LOAD_SHIFTED(Shifted)
 
 void main()
 {
@@ -21,13 +23,14 @@ void main()
     if (at.x >= frame.width || at.y >= frame.height) return;
     uint pixel = at.y * frame.width + at.x;
 
-    uint neighbor = neighbors[slotRow(pixel, slot)];
+    uint neighbor = neighborIn(pixel, slot);
     if (neighbor != NO_NEIGHBOR) {
         Reservoir own[MAX_RESERVOIRS];
         loadReservoirs(pixel, own);
         vec3 f[MAX_RESERVOIRS];
         shiftInto(makeDomain(neighbor, false), own, f);
     }
-    for (uint i = 0u; i < SHIFT_OUTCOMES; ++i)
-        shiftCounts[(slot * SHIFT_OUTCOMES + i) * pixelCount() + pixel] = shiftOutcomes[i];
+    uint row = 2u * (slot * pixelCount() + pixel);
+    STORE(ShiftCounts, row, uvec4(shiftOutcomes[0], shiftOutcomes[1], shiftOutcomes[2], shiftOutcomes[3]));
+    STORE(ShiftCounts, row + 1u, uvec4(shiftOutcomes[4], shiftOutcomes[5], 0u, 0u));
 }

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // The plain path tracer: sums every path that the walker reports.
 #include "lib/frame.glsl"
+#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 1, std430) writeonly buffer Color { vec4 color[]; };
+TABLE_OUT(SET_PASS, 1, Color);
 
 #include "path/primary_hit.glsl"
 #include "path/walk.glsl"
@@ -23,7 +24,7 @@ void main()
     PrimaryHit hit = loadPrimaryHit(pixel);
     radiance = finiteOrCounted(hit.emission, STAGE_PATH_TRACE);
     if (hit.seen) walk(hit.s, hit.wo, PathSeed(frame.frame, index));
-    color[index] = vec4(radiance, 0.0);
+    STORE(Color, index, rowOf(radiance));
     addToCounter(COUNTER_BOUNCE, tracedRays);
     addToCounter(COUNTER_SHADOW, shadowRays);
 }

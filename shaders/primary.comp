@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Camera rays: which surface point each pixel sees. Everything else about it is recomputed from the stored hit.
+#include "lib/table.glsl"
 #include "scene/camera.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_PASS, binding = 0, std430) writeonly buffer Surfaces { uvec4 surfaces[]; }; // two frames: triangle, barycentrics, 0
+TABLE_OUT(SET_PASS, 0, Surfaces);
 
 void main()
 {
@@ -14,6 +15,6 @@ void main()
     uint alphaSeed;
     Ray ray = pixelRay(pixel, alphaSeed);
     Hit hit = nearestHit(ray, alphaSeed);
-    surfaces[frame.slice * frame.width * frame.height + index] = uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u);
+    STORE(Surfaces, frame.slice * frame.width * frame.height + index, uvec4(hit.triangle, floatBitsToUint(hit.barycentric), 0u));
     addToCounter(COUNTER_PRIMARY, 1u);
 }

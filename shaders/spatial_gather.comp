@@ -8,35 +8,25 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 0, Reservoirs);
 TABLE(SET_PASS, 1, ReservoirPaths);
-TABLE(SET_PASS, 2, Neighbors);
+TABLE(SET_PASS, 2, Confidences);
 TABLE(SET_PASS, 3, Shifted);
-layout(set = SET_PASS, binding = 4, std430) buffer History { uvec4 history[]; };
-layout(set = SET_PASS, binding = 5, std430) buffer HistoryPaths { uvec4 historyPaths[]; };
-layout(set = SET_PASS, binding = 6, std430) buffer Color { vec4 color[]; };
-layout(set = SET_PASS, binding = 7, std430) readonly buffer MergedColor { vec4 mergedColor[]; };
+TABLE(SET_PASS, 4, MergedColor);
+TABLE_OUT(SET_PASS, 5, History);
+TABLE_OUT(SET_PASS, 6, HistoryPaths);
+TABLE_INOUT(SET_PASS, 7, Color);
+layout(set = SET_PASS, binding = 8, std430) writeonly buffer HistoryConfidences { uint historyConfidences[]; };
 
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(Reservoirs, FETCH, Reservoirs, ReservoirPaths)
-STORE_RESERVOIRS(History, history, historyPaths)
-
-uint chosenBy(uint pixel, uint slot)
-{
-    uint i = slotRow(pixel, slot);
-    return FETCH(Neighbors, i >> 2u)[i & 3u];
-}
+LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
+STORE_RESERVOIRS(History, History, HistoryPaths)
+LOAD_SHIFTED(Shifted)
 
 // NO_NEIGHBOR, too, where rounding made the two of a pair differ on whether they are alike.
 uint neighborOf(uint pixel, uint slot)
 {
-    uint neighbor = chosenBy(pixel, slot);
-    return neighbor != NO_NEIGHBOR && chosenBy(neighbor, slot) == pixel ? neighbor : NO_NEIGHBOR;
-}
-
-// f of the pixel's sample in the domain of its neighbor.
-vec3 shiftedFrom(uint pixel, uint slot, uint c)
-{
-    return uintBitsToFloat(FETCH(Shifted, shiftedRow(pixel, slot, c)).xyz);
+    uint neighbor = neighborIn(pixel, slot);
+    return neighbor != NO_NEIGHBOR && neighborIn(neighbor, slot) == pixel ? neighbor : NO_NEIGHBOR;
 }
 
 // How often do the reservoirs of a pixel agree? What they share is shifted once.
@@ -63,11 +53,11 @@ void main()
 
     Reservoir r[MAX_RESERVOIRS];
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) r[c] = loadReservoirsHead(pixel, c);
-    float confidence = float(loadReservoirsConfidence(pixel)); // c_i
+    float confidence = float(FETCH_WORD(Confidences, pixel)); // c_i
     float neighborConfidence = 0.0;                            // M_n
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
         uint neighbor = neighborOf(pixel, slot);
-        if (neighbor != NO_NEIGHBOR) neighborConfidence += float(loadReservoirsConfidence(neighbor));
+        if (neighbor != NO_NEIGHBOR) neighborConfidence += float(FETCH_WORD(Confidences, neighbor));
     }
     // Pairwise MIS in complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j is the part of the own sample's
     // MIS weight that neighbor j takes. Equal domains change nothing, to the last bit, and what rounding takes is carried on.
@@ -85,7 +75,7 @@ void main()
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
         uint neighbor = neighborOf(pixel, slot);
         if (neighbor == NO_NEIGHBOR) continue;
-        float part = float(loadReservoirsConfidence(neighbor)) / (confidence + neighborConfidence); // c_j / M
+        float part = float(FETCH_WORD(Confidences, neighbor)) / (confidence + neighborConfidence); // c_j / M
         float u = decisionFloat(decisionRandom(pixel, STREAM_SPATIAL + slot).x);                    // one for all reservoirs
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             Reservoir other = loadReservoirsHead(neighbor, c);
@@ -124,9 +114,9 @@ void main()
     }
     countTrees(r);
     storeHistory(pixel, r);
-    storeHistoryConfidence(pixel, uint(confidence + neighborConfidence));
+    historyConfidences[pixel] = uint(confidence + neighborConfidence);
     vec3 light = chosen;
     // Without neighbors nothing was merged here: the merge before stands.
-    if (COLOR_READING == COLOR_WEIGHTED) light = neighborConfidence > 0.0 ? weighted : mergedColor[pixel].rgb;
-    color[pixel] = vec4(finiteOrCounted(color[pixel].rgb + light, STAGE), 0.0);
+    if (COLOR_READING == COLOR_WEIGHTED) light = neighborConfidence > 0.0 ? weighted : colorIn(MergedColor, pixel);
+    STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + light, STAGE)));
 }

@@ -8,15 +8,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 1, Reservoirs);
 TABLE(SET_PASS, 2, ReservoirPaths);
-layout(set = SET_PASS, binding = 3, std430) writeonly buffer Neighbors { uint neighbors[]; }; // pixel, by slot
-// By slot and reservoir: f of this pixel's sample in the neighbor's domain.
-layout(set = SET_PASS, binding = 4, std430) writeonly buffer Shifted { vec4 shifted[]; };
+TABLE_OUT(SET_PASS, 3, Shifted);
 
 #include "integrand.glsl"
 #include "restir/estimator.glsl"
 #include "restir/neighbors.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(Reservoirs, FETCH, Reservoirs, ReservoirPaths)
+LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
+STORE_SHIFTED(Shifted)
 
 void main()
 {
@@ -27,14 +26,12 @@ void main()
 
     Domain here = makeDomain(pixel, false);
     uint neighbor = here.seen ? chooseNeighbor(at, slot, here) : NO_NEIGHBOR;
-    neighbors[slotRow(pixel, slot)] = neighbor;
-    if (neighbor == NO_NEIGHBOR) return;
-
-    Reservoir own[MAX_RESERVOIRS];
-    loadReservoirs(pixel, own);
     vec3 f[MAX_RESERVOIRS];
-    shiftInto(makeDomain(neighbor, false), own, f);
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
-        shifted[shiftedRow(pixel, slot, c)] = vec4(f[c], 0.0);
+    if (neighbor != NO_NEIGHBOR) {
+        Reservoir own[MAX_RESERVOIRS];
+        loadReservoirs(pixel, own);
+        shiftInto(makeDomain(neighbor, false), own, f);
+    }
+    storeShifted(pixel, slot, neighbor, f);
     countShifts();
 }

@@ -8,16 +8,18 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 1, History);
 TABLE(SET_PASS, 2, HistoryPaths);
-layout(set = SET_PASS, binding = 3, std430) buffer Reservoirs { uvec4 reservoirs[]; };
-layout(set = SET_PASS, binding = 4, std430) buffer ReservoirPaths { uvec4 reservoirPaths[]; };
-layout(set = SET_PASS, binding = 5, std430) writeonly buffer MergedColor { vec4 mergedColor[]; };
+TABLE(SET_PASS, 3, HistoryConfidences);
+TABLE_INOUT(SET_PASS, 4, Reservoirs);
+TABLE_INOUT(SET_PASS, 5, ReservoirPaths);
+TABLE_OUT(SET_PASS, 6, MergedColor);
+layout(set = SET_PASS, binding = 7, std430) buffer Confidences { uint confidences[]; };
 
 #include "integrand.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
-LOAD_RESERVOIRS(History, FETCH, History, HistoryPaths)
-LOAD_RESERVOIRS(Reservoirs, ELEMENT, reservoirs, reservoirPaths)
-STORE_RESERVOIRS(Reservoirs, reservoirs, reservoirPaths)
+LOAD_RESERVOIRS(History, History, HistoryPaths)
+LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
+STORE_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 
 void main()
 {
@@ -29,7 +31,7 @@ void main()
     uint previousPixel;
     if (!here.seen || !reproject(here, pixel, previousPixel)) return;
     Domain there = makeDomain(previousPixel, true);
-    uint historyConfidence = min(loadHistoryConfidence(previousPixel), frame.maxConfidence); // Eq. 12
+    uint historyConfidence = min(FETCH_WORD(HistoryConfidences, previousPixel), frame.maxConfidence); // Eq. 12
     if (historyConfidence == 0u || !alike(here, there)) return;
 
     Reservoir r[MAX_RESERVOIRS];
@@ -61,7 +63,7 @@ void main()
             ++way;
         LOOP_END(way < 2u)
     }
-    uint confidence = loadReservoirsConfidence(pixel);
+    uint confidence = confidences[pixel];
     float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs
     vec3 color = vec3(0.0); // w_n chi(x) + w_h chi(T y)
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
@@ -77,8 +79,8 @@ void main()
         r[c].chosen = old[c].chosen;
         r[c].f = fHere[c];
     }
-    if (COLOR_READING == COLOR_WEIGHTED) mergedColor[pixel] = vec4(finiteOrCounted(color, STAGE), 0.0);
+    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, pixel, rowOf(finiteOrCounted(color, STAGE)));
     storeReservoirs(pixel, r);
-    storeReservoirsConfidence(pixel, confidence + historyConfidence);
+    confidences[pixel] = confidence + historyConfidence;
     countShifts();
 }

@@ -2,6 +2,7 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/gpu/vulkan.h"
 
 #include <algorithm>
@@ -102,10 +103,17 @@ std::unique_ptr<BufferState> DeviceState::createBuffer(const BufferDescriptor& d
     const uint32_t type = memoryTypeFor(*this, descriptor.usage, needs.memoryTypeBits);
     const VkMemoryAllocateInfo allocation = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = type};
-    VkResult result = vkAllocateMemory(device, &allocation, nullptr, &state->memory);
+    const auto allocate = [&] {
+        // A CPU's driver takes what the system promises, and is killed when it uses what there is not.
+        const bool large = needs.size > StagingRing::BYTES; // asking reads some files
+        if (large && physical.deviceClass.cpu && needs.size > memory::availableBytes())
+            return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        return vkAllocateMemory(device, &allocation, nullptr, &state->memory);
+    };
+    VkResult result = allocate();
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY && !parked.empty()) { // let go of what is parked, then try again
         wait(submit(nullptr));
-        result = vkAllocateMemory(device, &allocation, nullptr, &state->memory);
+        result = allocate();
     }
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
         throw Error("Buffer \"{}\" of {} bytes does not fit into the memory of \"{}\", beside {} bytes in use{}.",

@@ -42,16 +42,14 @@ struct Inspector {
         return {list, count};
     }
 
-    // A table as a storage texel buffer that is only read (lib/table.glsl).
+    // A table as a storage texel buffer (lib/table.glsl).
     bool isTableImage(const spvc_reflected_resource& image) const
     {
         const spvc_type type = spvc_compiler_get_type_handle(compiler, image.type_id);
-        return spvc_type_get_image_dimension(type) == SpvDimBuffer &&
-               spvc_compiler_has_decoration(compiler, image.id, SpvDecorationNonWritable);
+        return spvc_type_get_image_dimension(type) == SpvDimBuffer;
     }
 
-    // A block that is a table stored in a storage buffer: read-only, one member, named after the block
-    // (lib/table.glsl).
+    // A block that is a table stored in a storage buffer: one member, named after the block (lib/table.glsl).
     bool isTableBlock(const spvc_reflected_resource& block) const
     {
         const spvc_type type = spvc_compiler_get_type_handle(compiler, block.base_type_id);
@@ -65,6 +63,10 @@ struct Inspector {
                           .set = spvc_compiler_get_decoration(compiler, resource.id, SpvDecorationDescriptorSet),
                           .binding = spvc_compiler_get_decoration(compiler, resource.id, SpvDecorationBinding),
                           .kind = kind};
+        if (kind == Binding::Kind::Table) {
+            result.reads = !spvc_compiler_has_decoration(compiler, resource.id, SpvDecorationNonReadable);
+            result.writes = !spvc_compiler_has_decoration(compiler, resource.id, SpvDecorationNonWritable);
+        }
         if (kind != Binding::Kind::Storage) return result;
         const SpvDecoration* decorations = nullptr;
         size_t count = 0;
@@ -95,8 +97,7 @@ struct Inspector {
             found.push_back(binding(r, Binding::Kind::Table));
         for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_STORAGE_BUFFER)) {
             found.push_back(binding(r, Binding::Kind::Storage));
-            if (!tablesAreTexelBuffers && !found.back().writes && isTableBlock(r))
-                found.back().kind = Binding::Kind::Table;
+            if (!tablesAreTexelBuffers && isTableBlock(r)) found.back().kind = Binding::Kind::Table;
         }
         std::ranges::sort(found, {}, [](const Binding& b) { return std::pair(b.set, b.binding); });
         return found;

@@ -37,6 +37,16 @@ struct FrameUniform {
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };
 
+// All stages that a frame can have, in their order: X(index, NAME, "shader").
+#define FRAME_STAGES(X)                                                                                                \
+    X(0u, PRIMARY, "primary")                                                                                          \
+    X(1u, PATH_TRACE, "path_trace")                                                                                    \
+    X(2u, CANONICAL, "canonical")                                                                                      \
+    X(3u, TEMPORAL, "temporal")                                                                                        \
+    X(4u, SPATIAL_TRACE, "spatial_trace")                                                                              \
+    X(5u, SPATIAL_GATHER, "spatial_gather")                                                                            \
+    X(6u, ACCUMULATE, "accumulate")
+
 // Device counters, 64 bits as (low, high) pairs: rays by kind, shifts by outcome, non-finite values by stage.
 SHARED_CONST uint COUNTER_PRIMARY = 0u;
 SHARED_CONST uint COUNTER_BOUNCE = 1u;
@@ -55,13 +65,9 @@ SHARED_CONST uint SHIFT_OUTCOMES = 6u;
 SHARED_CONST uint COUNTER_HELD = 11u;      // pixels of which every reservoir holds a sample, when there are several
 SHARED_CONST uint COUNTER_TREES = 12u;     // different path trees among those reservoirs
 SHARED_CONST uint COUNTER_NONFINITE = 13u; // + stage
-SHARED_CONST uint STAGE_PRIMARY = 0u;
-SHARED_CONST uint STAGE_PATH_TRACE = 1u;
-SHARED_CONST uint STAGE_CANONICAL = 2u;
-SHARED_CONST uint STAGE_TEMPORAL = 3u;
-SHARED_CONST uint STAGE_SPATIAL_TRACE = 4u;
-SHARED_CONST uint STAGE_SPATIAL_GATHER = 5u;
-SHARED_CONST uint STAGE_ACCUMULATE = 6u;
+#define DECLARE_STAGE(INDEX, NAME, SHADER) SHARED_CONST uint STAGE_##NAME = INDEX;
+FRAME_STAGES(DECLARE_STAGE)
+#undef DECLARE_STAGE
 SHARED_CONST uint STAGE_COUNT = 7u;
 SHARED_CONST uint COUNTER_COUNT = 20u;
 

@@ -20,10 +20,12 @@ using mat4 = glm::mat4;
     {
 #define SHARED_END }
 #define SHARED_CONST inline constexpr
+#define SHARED_FUNCTION constexpr
 #else
 #define SHARED_BEGIN
 #define SHARED_END
 #define SHARED_CONST const
+#define SHARED_FUNCTION
 #endif
 
 // Descriptor sets.

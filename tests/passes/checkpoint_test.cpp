@@ -141,7 +141,7 @@ TEST_F(CheckpointOfRenderer, GoesOnToTheSameBitsWhetherTheCameraRestsOrMoves)
         render(whole, cameraAt, 5);
 
         Renderer second(device(), scene, settings(method));
-        EXPECT_EQ(second.sceneFingerprint(), whole.sceneFingerprint());
+        EXPECT_EQ(second.scene().fingerprint(), whole.scene().fingerprint());
         render(second, cameraAt, 2); // what was there before is forgotten
         second.restore(passes::readCheckpoint(directory / "x.ckpt").state);
         EXPECT_EQ(second.frameCount(), 3u);
@@ -186,8 +186,8 @@ TEST_F(CheckpointOfRenderer, FitsNoOtherMethodOrSizeAndNoOtherSceneHasItsFingerp
     const Renderer painted(device(), scene, settings(Method::Pt));
     scene.cameras.at(0).position.x += 1e-3;
     const Renderer moved(device(), scene, settings(Method::Pt));
-    EXPECT_NE(painted.sceneFingerprint(), renderer.sceneFingerprint());
-    EXPECT_NE(moved.sceneFingerprint(), painted.sceneFingerprint());
+    EXPECT_NE(painted.scene().fingerprint(), renderer.scene().fingerprint());
+    EXPECT_NE(moved.scene().fingerprint(), painted.scene().fingerprint());
 }
 
 } // namespace

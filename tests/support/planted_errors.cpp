@@ -26,8 +26,8 @@ const std::vector<PlantedError>& plantedErrors()
         {"FailedShiftForgotten", "restir/reservoir.glsl", "        here.weightSum = weight;\n", ""},
         {"LuminanceWeights", "temporal.comp", "ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f))",
          "ratio(dot(vec3(1.0), fThere[c]), dot(vec3(1.0), r[c].f))"},
-        {"NeighborsByContent", "spatial_gather.comp", "chosenBy(neighbor, slot) == pixel ?",
-         "chosenBy(neighbor, slot) == pixel && loadReservoirsHead(neighbor, 0u).weightSum > 0.0 ?"},
+        {"NeighborsByContent", "spatial_gather.comp", "neighborIn(neighbor, slot) == pixel ?",
+         "neighborIn(neighbor, slot) == pixel && loadReservoirsHead(neighbor, 0u).weightSum > 0.0 ?"},
         {"PathOfAnother", "spatial_gather.comp", "loadReservoirsPath(lender[c], c)", "loadReservoirsPath(pixel, c)"},
         // What weighted color alone shows: reservoirs stay right.
         {"ColorOfOwnWeightTimes1_02", "temporal.comp", "color += weight * colorOf", "color += 1.02 * weight * colorOf"},

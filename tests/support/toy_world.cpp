@@ -11,6 +11,7 @@
 #include "engine/base/check.h"
 #include "passes/variant.h"
 #include "shaders/shared/frame.h"
+#include "shaders/shared/rows.h"
 #include "tests/shaders/toy/toy.h"
 
 namespace support
@@ -125,19 +126,22 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     variant.RESERVOIR_COUNT = uint32_t(estimator.target.size());
     variant.SHIFT_MAP = uint32_t(shift);
     variant.COLOR_READING = uint32_t(color);
+    variant.ONE_CHANNEL = passes::oneHot(estimator);
     constants_ = passes::constants(variant);
 
-    const uint64_t pixels = uint64_t{runs} * SIZE * SIZE, count = estimator.target.size();
+    const uint64_t pixels = uint64_t{runs} * SIZE * SIZE;
+    const uint32_t count = uint32_t(estimator.target.size());
     const auto add = [&](const char* name, uint64_t size, gpu::Usage usage = gpu::Usage::Storage | gpu::Usage::Table) {
         buffers_.emplace(name, device.createBuffer({.label = name, .size = size, .usage = usage}));
     };
     add("Frame", sizeof(shared::FrameUniform), gpu::Usage::Uniform);
     add("Counters", 2 * sizeof(uint32_t) * shared::COUNTER_COUNT);
     add("Domains", domainBytes(false).size());
-    for (const char* set : {"Reservoirs", "History"}) add(set, pixels * (count * 2 * 16 + 4));
-    for (const char* set : {"ReservoirPaths", "HistoryPaths"}) add(set, pixels * count * 3 * 16);
-    add("Neighbors", pixels * NEIGHBORS * sizeof(uint32_t));
-    add("Shifted", pixels * NEIGHBORS * count * 16);
+    const bool one = variant.ONE_CHANNEL;
+    for (const char* set : {"Reservoirs", "History"}) add(set, pixels * shared::headRows(count, one) * 16);
+    for (const char* set : {"ReservoirPaths", "HistoryPaths"}) add(set, pixels * count * shared::pathRows(one) * 16);
+    for (const char* words : {"Confidences", "HistoryConfidences"}) add(words, pixels * sizeof(uint32_t));
+    add("Shifted", pixels * NEIGHBORS * shared::slotRows(count, one) * 16);
     add("Color", pixels * 16);
     add("MergedColor", pixels * 16);
 }

@@ -30,7 +30,7 @@ passes::Identity identityOf(const passes::Renderer& renderer, const RunReport& r
                                  {"device", report.adapter.name},
                                  {"driver", report.adapter.driver},
                                  {"device-tuning", gpu::toText(report.adapter.tuning)},
-                                 {"scene's contents", hexadecimal(renderer.sceneFingerprint())}};
+                                 {"scene's contents", hexadecimal(renderer.scene().fingerprint())}};
     for (const auto& [name, value] : passes::toText(report.settings))
         if (decidesFrames(name)) identity.emplace_back(name, value);
     for (const auto& [name, value] : report.extra) {

@@ -93,7 +93,7 @@ class Correlator
         emission_ = emitters_->readFrame();
     }
 
-    bool sameView() const { return !cameraAt_ && emitters_->viewRepeats(plain_); }
+    bool sameView() const { return !cameraAt_ && emitters_->scene().viewRepeats(plain_); }
 
     // The law of plain frames, as many as the longest law of a method has.
     CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
@@ -196,7 +196,7 @@ std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const s
 {
     uint32_t most = batch;
     for (const NamedMethod& method : list)
-        most = std::min(most, passes::Renderer::maxRuns(gpu.limits(), method.settings));
+        most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
     std::vector<uint32_t> sizes;
     for (uint32_t left = runs; most >= MIN_BATCH && left > 0; left -= sizes.back())
         sizes.push_back(std::min(left, most));

@@ -59,7 +59,7 @@ std::vector<std::pair<std::string, passes::Variant>> stagesFor(const Order& orde
                                                                const passes::Renderer& renderer)
 {
     const passes::Settings settings = settingsOf(order, side);
-    auto stages = renderer.stagesFor(settings, order.moving);
+    auto stages = passes::stagesOf(renderer.scene(), settings, order.moving);
     const passes::Variant variant = stages.front().second;
     const bool resamples = settings.method != passes::Method::Pt;
     if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);

@@ -216,7 +216,7 @@ void RenderThread::load(const Order& order)
     sides_[B].reset(); // of the old scene
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
-    compiler_.learn(sides_[A]->renderer().stagesFor(settingsOf(order, A)));
+    compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), settingsOf(order, A)));
     const SceneFacts facts{order.scene, scene_->cameras, scene_->origin, scene_->warnings};
     const std::lock_guard lock(mutex_);
     sceneFacts_ = std::make_shared<const SceneFacts>(facts);
@@ -288,10 +288,11 @@ void RenderThread::compileAhead(const Order& order)
 {
     CompileAhead::Stages stages;
     const auto add = [&](const passes::Settings& settings) {
-        for (auto& stage : sides_[A]->renderer().stagesFor(settings)) stages.push_back(std::move(stage));
+        for (auto& stage : passes::stagesOf(sides_[A]->renderer().scene(), settings))
+            stages.push_back(std::move(stage));
     };
     const passes::Settings settings = settingsOf(order, A);
-    stages = sides_[A]->renderer().stagesFor(settings, true); // a moved camera
+    stages = passes::stagesOf(sides_[A]->renderer().scene(), settings, true); // a moved camera
     using passes::Method, passes::Shift;
     for (const Method method : {Method::RgbRestir, Method::RestirPt, Method::Pt}) {
         passes::Settings other = settings;
@@ -319,7 +320,8 @@ void RenderThread::reloadShaders()
         CompileAhead::Stages stages;
         for (const std::unique_ptr<Contender>& side : sides_)
             if (side)
-                for (auto& stage : side->renderer().stagesFor(side->renderer().settings())) stages.push_back(stage);
+                for (auto& stage : passes::stagesOf(side->renderer().scene(), side->renderer().settings()))
+                    stages.push_back(stage);
         if (!compiler_.ready(stages)) return;
         reload_ = false;
         passes::PipelinePool& pool = *sides_[A]->renderer().pipelines();

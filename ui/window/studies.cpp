@@ -66,7 +66,7 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
 {
     Stages stages;
     const auto add = [&](const passes::Settings& settings) {
-        for (auto& stage : like.stagesFor(settings)) stages.push_back(std::move(stage));
+        for (auto& stage : passes::stagesOf(like.scene(), settings)) stages.push_back(std::move(stage));
     };
     passes::Settings plain = settingsOf(order, A);
     plain.method = passes::Method::Pt;
@@ -80,7 +80,7 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
         if (order.studies.correlation || order.studies.floor) add(passes::lawSettings(settings));
     }
     if (order.studies.savings > 0) {
-        for (const auto& [name, needed] : like.stagesFor(settingsOf(order, A), true))
+        for (const auto& [name, needed] : passes::stagesOf(like.scene(), settingsOf(order, A), true))
             stages.emplace_back(name, passes::withAllFeatures(needed));
     }
     return stages;

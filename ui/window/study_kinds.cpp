@@ -109,7 +109,7 @@ class CorrelationStudy : public Study
         curve_.height = settings_.height;
         curve_.runs = RUNS;
         chainRenderer_ = siblingOf(subject, settings_, RUNS);
-        if (!passes::lawHolds(settings_, subject.like.viewRepeats(settings_))) return;
+        if (!passes::lawHolds(settings_, subject.like.scene().viewRepeats(settings_))) return;
         emission_ = emissionOf(subject, settings_);
         lawSettings_ = passes::lawSettings(settings_);
         if (passes::accumulates(settings_.method)) lawSettings_.method = passes::Method::Pt;

@@ -20,6 +20,13 @@ double residentBytes()
 
 } // namespace
 
+TEST(Memory, SaysWhatTheSystemCanStillGive)
+{
+    const uint64_t all = uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
+    EXPECT_GT(memory::availableBytes(), 16u << 20);
+    EXPECT_LT(memory::availableBytes(), all);
+}
+
 // Small blocks between others that stay, so that no allocator gives them back of itself.
 TEST(Memory, FreedBlocksAreNoLongerInUseAndGoBackToTheSystem)
 {

@@ -1,5 +1,8 @@
 #include "engine/base/error.h"
+#include "shaders/shared/types.h"
 #include "tests/support/gpu_fixture.h"
+
+#include <algorithm>
 
 namespace
 {
@@ -48,6 +51,32 @@ TEST_F(Buffer, TooLargeForItsUsageIsAnErrorThatNamesTheSetting)
         EXPECT_NE(message.find("reduce --size"), std::string::npos) << message;
     }
     EXPECT_NE(errorFor(gpu::Usage::Readback, uint64_t{1} << 50).find("reduce --size"), std::string::npos);
+}
+
+// Where a picture's buffers lie: beyond what a storage buffer may hold, and before the end of what is asked for.
+TEST_F(Buffer, AsATableIsReadAndWrittenBeyondTheLargestStorageBinding)
+{
+    const gpu::Limits& limits = device().limits();
+    const uint64_t bytes = std::min((uint64_t{128} << 20) + 4096, limits.tableBytes);
+    const uint32_t rows = uint32_t(bytes / sizeof(glm::uvec4)), count = 100;
+    gpu::Buffer table = create<glm::uvec4>("rows", rows, gpu::Usage::Table);
+    std::vector<glm::uvec4> low, high;
+    for (uint32_t i = 0; i < count; ++i) {
+        low.emplace_back(i, 1, 2, 3);
+        high.emplace_back(4, 5, 6, i);
+    }
+    const uint64_t end = uint64_t{rows - count} * sizeof(glm::uvec4);
+    device().queue().write(table, std::as_bytes(std::span(low)));
+    device().queue().write(table, std::as_bytes(std::span(high)), end);
+    const gpu::Buffer ends = upload("ends", std::vector<uint32_t>{0, rows - 1, count, 0});
+    run({.shader = TEST_SPIRV_DIR "/large_table_test",
+         .buffers = {{"Rows", &table}, {"Ends", &ends}},
+         .threads = {count}});
+    std::vector<glm::uvec4> found = download<glm::uvec4>(table);
+    std::ranges::reverse(low);
+    std::ranges::reverse(high);
+    EXPECT_EQ(std::vector(found.begin(), found.begin() + count), high);
+    EXPECT_EQ(std::vector(found.end() - count, found.end()), low);
 }
 
 TEST_F(Buffer, OfOddSizeKeepsItsLastBytes)

@@ -84,6 +84,19 @@ TEST_F(Pipeline, ReflectsTheSameBindingsFromBothFlavors)
     }
 }
 
+// Barriers come from this.
+TEST_F(Pipeline, ReflectsWhichTablesAStageReadsAndWrites)
+{
+    for (const bool texel : {true, false})
+        for (const gpu::Binding& binding :
+             gpu::reflect(gpu::loadShader("temporal", texel), "temporal", texel, {}).bindings) {
+            if (binding.set != 2 || binding.kind != Kind::Table) continue;
+            EXPECT_EQ(binding.reads, binding.name != "MergedColor") << binding.name;
+            EXPECT_EQ(binding.writes, binding.name == "MergedColor" || binding.name.starts_with("Reservoir"))
+                << binding.name;
+        }
+}
+
 TEST_F(Pipeline, ReflectsReadonlyAndWriteonly)
 {
     const gpu::Reflection shader =

@@ -1,0 +1,38 @@
+#include "passes/frame_plan.h"
+
+namespace passes
+{
+
+// The paper's four stages, between what a pixel sees and what the film keeps.
+FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32_t runs)
+{
+    const gpu::Threads pixels = {settings.width, settings.height * runs};
+    const gpu::Threads slots = {pixels.x * settings.spatial, pixels.y};
+    const Variant variant = scene.variant(settings);
+    Variant sameView = variant; // shifts between the two frames are identities, and left out
+    sameView.SAME_VIEW = true;
+
+    FramePlan plan = {{"primary", variant, pixels, [](const FrameState& frame) { return !frame.hitsKnown; }}};
+    if (settings.method == Method::Pt) {
+        plan.push_back({"path_trace", variant, pixels});
+    } else {
+        plan.push_back({"canonical", variant, pixels});
+        plan.push_back({"temporal", variant, pixels, [](const FrameState& f) { return f.history && !f.sameView; }});
+        plan.push_back({"temporal", sameView, pixels, [](const FrameState& f) { return f.history && f.sameView; }});
+        if (settings.spatial > 0) plan.push_back({"spatial_trace", variant, slots});
+        plan.push_back({"spatial_gather", variant, pixels});
+    }
+    plan.push_back({"accumulate", variant, pixels});
+    return plan;
+}
+
+StageList stagesOf(const SceneOnDevice& scene, const Settings& settings, bool cameraMoves)
+{
+    const FrameState frame{.history = settings.temporal, .sameView = !cameraMoves && scene.viewRepeats(settings)};
+    StageList list;
+    for (const PlannedStage& stage : framePlan(scene, settings, 1))
+        if (stage.runs(frame)) list.emplace_back(stage.shader, stage.variant);
+    return list;
+}
+
+} // namespace passes

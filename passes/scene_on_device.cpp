@@ -1,0 +1,57 @@
+#include "passes/scene_on_device.h"
+
+#include "engine/base/fingerprint.h"
+
+#include <chrono>
+#include <cmath>
+#include <span>
+
+namespace passes
+{
+
+SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const scene::Camera& first,
+                             scene::FeatureSet set, const std::function<void(double)>& bvhProgress,
+                             std::shared_ptr<PipelinePool> pool)
+    : device(gpu), pipelines(pool ? std::move(pool) : std::make_shared<PipelinePool>(gpu)), camera(first),
+      featureSet(set)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const scene::SceneTables made = scene::makeSceneTables(scene, gpu.limits().tableBytes, bvhProgress, set);
+    tables = std::make_unique<const scene::GpuScene>(gpu, made);
+    bvh = made.bvh.stats;
+    tablesSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - bvh.buildSeconds;
+    lights = made.lights;
+    features = made.features;
+    lengthScale = made.lengthScale;
+    radianceScale = made.radianceScale;
+}
+
+shared::CameraUniform SceneOnDevice::uniformOf(const scene::Camera& seenBy, double aspect) const
+{
+    const double height = seenBy.orthographic ? seenBy.ymag * lengthScale : std::tan(seenBy.yfov / 2);
+    const auto vector = [](const glm::dvec3& v) { return glm::vec4(glm::vec3(v), 0.0f); };
+    return {.position = vector(seenBy.position * lengthScale),
+            .right = vector(seenBy.right * height * aspect),
+            .up = vector(seenBy.up * height),
+            .forward = vector(seenBy.forward)};
+}
+
+Variant SceneOnDevice::variant(const Settings& settings) const
+{
+    return makeVariant(features, settings, camera.orthographic, tables->stack());
+}
+
+bool SceneOnDevice::viewRepeats(const Settings& settings) const
+{
+    return featureSet == scene::FeatureSet::Needed && settings.pixelFilter == PixelFilter::Center && !features.blend;
+}
+
+uint64_t SceneOnDevice::fingerprint() const
+{
+    const double scales[] = {lengthScale, radianceScale};
+    const shared::CameraUniform first = uniformOf(camera, 1);
+    const uint64_t contents = ::fingerprint(std::as_bytes(std::span(scales)), tables->contents());
+    return ::fingerprint(std::as_bytes(std::span(&first, 1)), contents);
+}
+
+} // namespace passes

@@ -1,0 +1,43 @@
+#pragma once
+// A scene as its renderers share it: the tables on a device, what they need compiled in, and how they are scaled.
+
+#include <functional>
+#include <memory>
+
+#include "engine/gpu/gpu.h"
+#include "engine/scene/gpu_scene.h"
+#include "engine/scene/scene.h"
+#include "passes/pipeline_pool.h"
+#include "passes/settings.h"
+#include "passes/variant.h"
+#include "shaders/shared/frame.h"
+
+namespace passes
+{
+
+struct SceneOnDevice {
+    // `camera`: the first one that it is seen by; all others have its kind of projection, which is compiled in.
+    SceneOnDevice(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
+                  scene::FeatureSet featureSet, const std::function<void(double)>& bvhProgress,
+                  std::shared_ptr<PipelinePool> pipelines);
+
+    shared::CameraUniform uniformOf(const scene::Camera& camera, double aspect) const;
+    Variant variant(const Settings& settings) const;
+    // Does every pixel see the same point in each frame while the camera rests? This alone lets frames take over what
+    // an earlier one saw: not where rays go anywhere through the pixel, nor where surfaces exist by chance.
+    bool viewRepeats(const Settings& settings) const;
+    uint64_t fingerprint() const; // of geometry, materials, lights, first camera
+
+    gpu::Device& device;
+    std::shared_ptr<PipelinePool> pipelines;
+    scene::Camera camera;
+    scene::FeatureSet featureSet;
+    double tablesSeconds = 0; // scene -> tables, without the BVH
+    scene::BvhStats bvh;
+    scene::LightCounts lights;
+    scene::SceneFeatures features;
+    double lengthScale = 1, radianceScale = 1; // scaled over the scene's units
+    std::unique_ptr<const scene::GpuScene> tables;
+};
+
+} // namespace passes

@@ -1,0 +1,79 @@
+#include "passes/frame_buffers.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using passes::Color, passes::Method, passes::Settings, passes::Shift;
+
+constexpr uint64_t MIB = uint64_t{1} << 20;
+// lavapipe's, of which rows of tables are counted by int, and storage buffers are the smallest that Vulkan allows.
+const gpu::Limits LAVAPIPE = {.storageBindingBytes = 128 * MIB, .tableBytes = 2048 * MIB, .memoryBytes = 2048 * MIB};
+
+Settings settingsOf(Method method, Shift shift, uint32_t width, uint32_t height)
+{
+    return {.method = method, .shift = shift, .width = width, .height = height};
+}
+
+uint64_t limitOf(const passes::PixelBuffer& buffer, const gpu::Limits& limits)
+{
+    return has(buffer.usage, gpu::Usage::Storage) ? std::min(limits.storageBindingBytes, limits.tableBytes)
+                                                  : limits.tableBytes;
+}
+
+} // namespace
+
+TEST(FrameBuffers, OfEveryMethodFitTheBindingsOfACpuDriverUpTo4K)
+{
+    for (const Method method : {Method::Pt, Method::RestirPt, Method::RgbRestir, Method::GroupedRestir})
+        for (const Shift shift : {Shift::Replay, Shift::Reconnection, Shift::Hybrid})
+            for (const uint32_t spatial : {0u, 3u, 8u}) {
+                Settings settings = settingsOf(method, shift, 3840, 2160);
+                settings.spatial = spatial;
+                for (const passes::PixelBuffer& buffer : passes::pixelBuffers(settings)) {
+                    const uint64_t bytes = buffer.bytes * settings.width * settings.height;
+                    EXPECT_LE(bytes, limitOf(buffer, LAVAPIPE)) << buffer.name << ", K = " << spatial;
+                    EXPECT_LE(bytes / 16, uint64_t{INT32_MAX}) << buffer.name; // rows are counted by int
+                }
+                EXPECT_EQ(passes::maxRuns(LAVAPIPE, settings) > 0,
+                          passes::bytesPerPixel(settings) * settings.width * settings.height <=
+                              LAVAPIPE.memoryBytes / 4);
+            }
+}
+
+TEST(FrameBuffers, TakeOfAPixelWhatTheDocumentsSay)
+{
+    const auto bytes = [](Method method, Shift shift, Color color = Color::Weighted) {
+        Settings settings = settingsOf(method, shift, 640, 360);
+        settings.color = color;
+        return passes::bytesPerPixel(settings);
+    };
+    EXPECT_EQ(bytes(Method::Pt, Shift::Hybrid), 80u);
+    EXPECT_EQ(bytes(Method::RestirPt, Shift::Hybrid), 312u);
+    EXPECT_EQ(bytes(Method::RestirPt, Shift::Hybrid, Color::Chosen), 296u);
+    EXPECT_EQ(bytes(Method::RestirPt, Shift::Replay), 216u);
+    EXPECT_EQ(bytes(Method::RgbRestir, Shift::Hybrid), 488u);
+    EXPECT_EQ(bytes(Method::RgbRestir, Shift::Replay), 296u);
+    EXPECT_EQ(bytes(Method::GroupedRestir, Shift::Hybrid), 520u);
+}
+
+TEST(FrameBuffers, KeepWhatTheNextFrameNeeds)
+{
+    const auto lasting = [](Method method) {
+        std::vector<std::string> names;
+        for (const passes::PixelBuffer& buffer : passes::pixelBuffers(settingsOf(method, Shift::Hybrid, 64, 36)))
+            if (buffer.lasts) names.emplace_back(buffer.name);
+        return names;
+    };
+    EXPECT_EQ(lasting(Method::Pt), (std::vector<std::string>{"Color", "Film"}));
+    EXPECT_EQ(lasting(Method::RgbRestir),
+              (std::vector<std::string>{"Surfaces", "Color", "Film", "History", "HistoryPaths", "HistoryConfidences"}));
+}
+
+TEST(FrameBuffers, HoldAsManyRunsAsMemoryAndWorkgroupsAllow)
+{
+    EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 1024, 1024)), 512u / 80);
+    EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 1, 16)), 65535u / 2);
+    EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 32768, 32768)), 0u);
+}

@@ -1,0 +1,98 @@
+#include "passes/frame_plan.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "engine/scene/procedural.h"
+#include "tests/support/gpu_fixture.h"
+
+namespace
+{
+
+using Names = std::vector<std::string>;
+using passes::Method;
+
+class FramePlan : public GpuTest
+{
+  protected:
+    static passes::SceneOnDevice cornell(scene::FeatureSet set = scene::FeatureSet::Needed)
+    {
+        const scene::Scene scene = scene::makeCornell();
+        return {device(), scene, scene.cameras.at(0), set, {}, nullptr};
+    }
+    // Names of what runs; "=" for a variant without shifts.
+    static Names stages(const passes::SceneOnDevice& scene, const passes::Settings& settings,
+                        const passes::FrameState& frame)
+    {
+        Names names;
+        for (const passes::PlannedStage& stage : passes::framePlan(scene, settings, 1))
+            if (stage.runs(frame)) names.push_back(std::string(stage.variant.SAME_VIEW ? "=" : "") + stage.shader);
+        return names;
+    }
+};
+
+TEST_F(FramePlan, IsThePapersFrame)
+{
+    const passes::SceneOnDevice scene = cornell();
+    passes::Settings settings;
+    EXPECT_EQ(stages(scene, settings, {}), (Names{"primary", "path_trace", "accumulate"}));
+    EXPECT_EQ(stages(scene, settings, {.hitsKnown = true, .history = true, .sameView = true}),
+              (Names{"path_trace", "accumulate"}));
+    settings.method = Method::RgbRestir;
+    EXPECT_EQ(stages(scene, settings, {}),
+              (Names{"primary", "canonical", "spatial_trace", "spatial_gather", "accumulate"}));
+    EXPECT_EQ(stages(scene, settings, {.history = true}),
+              (Names{"primary", "canonical", "temporal", "spatial_trace", "spatial_gather", "accumulate"}));
+    settings.spatial = 0;
+    EXPECT_EQ(stages(scene, settings, {.hitsKnown = true, .history = true, .sameView = true}),
+              (Names{"canonical", "=temporal", "spatial_gather", "accumulate"}));
+}
+
+TEST_F(FramePlan, KeepsTheOrderOfTheList)
+{
+#define ADD_NAME(INDEX, NAME, SHADER) SHADER,
+    const Names all = {FRAME_STAGES(ADD_NAME)};
+#undef ADD_NAME
+    EXPECT_EQ(all.size(), shared::STAGE_COUNT);
+    const passes::SceneOnDevice scene = cornell();
+    for (const Method method : {Method::Pt, Method::RestirPt, Method::RgbRestir, Method::GroupedRestir}) {
+        auto last = all.begin();
+        for (const passes::PlannedStage& stage : passes::framePlan(scene, {.method = method}, 1)) {
+            last = std::find(last, all.end(), stage.shader);
+            EXPECT_NE(last, all.end()) << stage.shader;
+        }
+    }
+}
+
+TEST_F(FramePlan, HasAThreadForEachPixelOfAllRunsAndForEachNeighbor)
+{
+    const passes::Settings settings{.method = Method::RestirPt, .spatial = 5, .width = 20, .height = 10};
+    for (const passes::PlannedStage& stage : passes::framePlan(cornell(), settings, 3)) {
+        EXPECT_EQ(stage.threads.x, std::string(stage.shader) == "spatial_trace" ? 100u : 20u);
+        EXPECT_EQ(stage.threads.y, 30u);
+    }
+}
+
+TEST_F(FramePlan, TellsThoseWhoCompileAheadWhatAFrameAfterTheFirstRuns)
+{
+    const auto listed = [](const passes::SceneOnDevice& scene, const passes::Settings& settings, bool moves) {
+        Names names;
+        for (const auto& [name, variant] : passes::stagesOf(scene, settings, moves))
+            names.push_back((variant.SAME_VIEW ? "=" : "") + name);
+        return names;
+    };
+    const passes::SceneOnDevice scene = cornell(), everything = cornell(scene::FeatureSet::Everything);
+    passes::Settings settings{.method = Method::RestirPt, .spatial = 0};
+    const Names still{"primary", "canonical", "=temporal", "spatial_gather", "accumulate"};
+    const Names moving{"primary", "canonical", "temporal", "spatial_gather", "accumulate"};
+    EXPECT_EQ(listed(scene, settings, false), still);
+    EXPECT_EQ(listed(scene, settings, true), moving);
+    EXPECT_EQ(listed(everything, settings, false), moving);
+    settings.pixelFilter = passes::PixelFilter::Box;
+    EXPECT_EQ(listed(scene, settings, false), moving);
+    settings.temporal = false;
+    EXPECT_EQ(listed(scene, settings, false), (Names{"primary", "canonical", "spatial_gather", "accumulate"}));
+}
+
+} // namespace
