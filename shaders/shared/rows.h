@@ -12,11 +12,20 @@ SHARED_CONST uint FILM_ROWS = 2u; // sum, carry
 
 // Of a set of `count` reservoirs (restir/reservoir_store.glsl): a row each; then f and carry, a row each, or, where a
 // contribution is one number, a row of f and one of carries for all.
-SHARED_FUNCTION uint headRows(uint count, bool oneChannel) { return oneChannel ? count + 2u : 2u * count; }
+SHARED_FUNCTION uint headRows(uint count, bool oneChannel)
+{
+    return oneChannel ? count + 2u : 2u * count;
+}
 // What a reservoir knows of its path from the reconnection vertex on.
-SHARED_FUNCTION uint pathRows(bool oneChannel) { return oneChannel ? 2u : 3u; }
+SHARED_FUNCTION uint pathRows(bool oneChannel)
+{
+    return oneChannel ? 2u : 3u;
+}
 // Of a slot: f of each reservoir's sample in the neighbor's domain, and the neighbor in a word that is left.
-SHARED_FUNCTION uint slotRows(uint count, bool oneChannel) { return oneChannel ? count / 4u + 1u : count; }
+SHARED_FUNCTION uint slotRows(uint count, bool oneChannel)
+{
+    return oneChannel ? count / 4u + 1u : count;
+}
 
 SHARED_END
 

@@ -37,7 +37,7 @@
     X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
     X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")                                                \
     X(30, uint, COLOR_READING, 0u,                                                                                     \
-      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last")       \
+      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last")        \
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")
 
 SHARED_BEGIN

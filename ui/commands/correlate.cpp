@@ -195,8 +195,7 @@ std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& b
 std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const
 {
     uint32_t most = batch;
-    for (const NamedMethod& method : list)
-        most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
+    for (const NamedMethod& method : list) most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
     std::vector<uint32_t> sizes;
     for (uint32_t left = runs; most >= MIN_BATCH && left > 0; left -= sizes.back())
         sizes.push_back(std::min(left, most));
