@@ -30,9 +30,12 @@ Kind drawKind(Draw& draw, const std::string& only)
     return Kind(kind);
 }
 
-Truth drawTruth(Draw& draw, Kind kind)
+Truth drawTruth(Draw& draw, Kind kind, const std::string& only)
 {
     if (kind == Kind::Sealed) return Truth::Black;
+    if (only == TRUTH_NAMES[size_t(Truth::PathTracer)]) return Truth::PathTracer;
+    if (only == TRUTH_NAMES[size_t(Truth::Reference)]) return Truth::Reference;
+    if (!only.empty()) throw Error("There is no truth \"{}\" to choose; there are: pt, reference.", only);
     const double reference = kind == Kind::Panes ? 0.2 : kind == Kind::Edges ? 0.7 : 0.5;
     return draw.chance(reference) ? Truth::Reference : Truth::PathTracer;
 }
@@ -101,11 +104,13 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
 
 } // namespace
 
-Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind, bool onItself) : seed_(seed), index_(index)
+Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind, const std::string& onlyTruth,
+                 bool onItself)
+    : seed_(seed), index_(index)
 {
     Draw draw{seed, index};
     kind_ = drawKind(draw, onlyKind);
-    truth_ = drawTruth(draw, kind_);
+    truth_ = drawTruth(draw, kind_, onlyTruth);
     palette_ = drawPalette(draw, kind_, truth_);
     drawChoices(settings_, draw);
     using enum passes::Method;

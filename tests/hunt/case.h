@@ -49,7 +49,8 @@ class Session
 {
   public:
     // With `onItself` the path tracer is compared with itself: whatever is found is a false alarm.
-    Session(uint64_t seed, uint64_t index, const std::string& onlyKind = "", bool onItself = false);
+    Session(uint64_t seed, uint64_t index, const std::string& onlyKind = "", const std::string& onlyTruth = "",
+            bool onItself = false);
     Case draw(uint64_t place) const; // one of SESSION_CASES
     Kind kind() const { return kind_; }
 

@@ -32,7 +32,7 @@ double secondsSince(Clock::time_point start)
 struct Options {
     double minutes = 5, shrinkSeconds = 120;
     uint64_t seed = 1, most = 0; // most finds; 0: no limit
-    std::string only, device, plant, out = "build/hunt";
+    std::string only, against, device, plant, out = "build/hunt";
     int64_t number = -1;
     bool onItself = false, verbose = false;
 };
@@ -62,7 +62,7 @@ class Hunt
         const bool one = options_.number >= 0;
         const uint64_t first = one ? uint64_t(options_.number) / hunt::SESSION_CASES : 0;
         for (uint64_t index = first; !over(); ++index) {
-            const hunt::Session session(options_.seed, index, options_.only, options_.onItself);
+            const hunt::Session session(options_.seed, index, options_.only, options_.against, options_.onItself);
             Place place(descriptor(index % VALIDATED == VALIDATED - 1));
             const uint64_t from = one ? uint64_t(options_.number) % hunt::SESSION_CASES : 0;
             for (uint64_t i = from; i < hunt::SESSION_CASES && !over(); ++i) {
@@ -174,7 +174,9 @@ int main(int argc, char** argv)
     app.add_option("MINUTES", options.minutes, "How long.");
     app.add_option("--seed", options.seed, "Of all cases.");
     app.add_option("--only", options.only, fmt::format("One kind of scene: {}.", fmt::join(hunt::KIND_NAMES, ", ")));
-    app.add_option("--case", options.number, "One case of that seed (and --only), and no other.");
+    app.add_option("--against", options.against,
+                   "One truth, where a scene has two: pt (for estimators), reference (for pt).");
+    app.add_option("--case", options.number, "One case of that seed (and --only, --against), and no other.");
     app.add_option("--plant", options.plant, "An error to plant in the shaders: would it be found?");
     app.add_option("--most", options.most, "Ends after so many finds.");
     app.add_option("--shrink", options.shrinkSeconds, "How long a find may be made smaller, in seconds.");
