@@ -34,17 +34,10 @@ void main()
     uint historyConfidence = min(FETCH_WORD(HistoryConfidences, previousPixel), frame.maxConfidence); // Eq. 12
     if (historyConfidence == 0u || !alike(here, there)) return;
 
-    Reservoir r[MAX_RESERVOIRS];
-    Reservoir old[MAX_RESERVOIRS];
-    loadReservoirs(pixel, r);
-    loadHistory(previousPixel, old);
-    vec3 fThere[MAX_RESERVOIRS]; // of r's samples in the history's domain
+    vec3 fThere[MAX_RESERVOIRS]; // of this pixel's samples in the history's domain
     vec3 fHere[MAX_RESERVOIRS];  // of the history's samples here
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        fThere[c] = r[c].f;
-        fHere[c] = old[c].f;
-    }
-    // SAME_VIEW: every pixel sees what it saw, all shifts are identities. Else a loop, so that the walk is compiled once.
+    // SAME_VIEW: every pixel sees what it saw, all shifts are identities. Else a loop, so that the walk is compiled once; the
+    // reservoirs are read again after it, so that they need no registers meanwhile.
     if (!SAME_VIEW) {
         uint way = 0u;
         LOOP_BEGIN(way < 2u)
@@ -52,10 +45,10 @@ void main()
             vec3 f[MAX_RESERVOIRS];
             Reservoir subjects[MAX_RESERVOIRS];
             Domain to = there;
-            subjects = r;
+            if (backward) loadReservoirs(pixel, subjects);
             if (!backward) {
                 to = here;
-                subjects = old;
+                loadHistory(previousPixel, subjects);
             }
             shiftInto(to, subjects, f);
             if (backward) fThere = f;
@@ -63,6 +56,15 @@ void main()
             ++way;
         LOOP_END(way < 2u)
     }
+    Reservoir r[MAX_RESERVOIRS];
+    Reservoir old[MAX_RESERVOIRS];
+    loadReservoirs(pixel, r);
+    loadHistory(previousPixel, old);
+    if (SAME_VIEW)
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+            fThere[c] = r[c].f;
+            fHere[c] = old[c].f;
+        }
     uint confidence = confidences[pixel];
     float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs
     vec3 color = vec3(0.0); // w_n chi(x) + w_h chi(T y)
