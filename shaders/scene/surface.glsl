@@ -208,7 +208,8 @@ vec3 shadingNormal(uint material, uvec4 packed, vec2 barycentric, Coordinates at
     vec3 bent = sampleTexture(use, at.uv0, at.uv1).xyz * 2.0 - 1.0;
     bent.xy *= uintBitsToFloat(FETCH(SceneData, material + 4u).x);
     vec3 tangent = baryMix(octahedralDecode(at.tangents.x), octahedralDecode(at.tangents.y), octahedralDecode(packed.w), barycentric);
-    tangent *= inversesqrt(max(dot(tangent, tangent), 1e-30));
+    float length2 = dot(tangent, tangent);
+    if (length2 > 0.0) tangent *= inversesqrt(length2); // opposite ones may leave nothing
     float handedness = (at.tangents.x & 1u) != 0u ? -1.0 : 1.0;
     vec3 candidate = tangent * bent.x + cross(normal, tangent) * handedness * bent.y + normal * bent.z;
     float squared = dot(candidate, candidate);
