@@ -106,9 +106,9 @@ TEST_F(InspectWindow, ChangedShadersAreTakenUpAndBrokenOnesAreRefused)
     const int frames = report()["frames"];
     EXPECT_TRUE(comes([&](const Json& json) { return json["frames"] > frames; })); // the old one goes on
     std::string red = text;
-    const std::string line = "color[index] = vec4(radiance, 0.0);";
+    const std::string line = "rowOf(radiance)";
     ASSERT_NE(red.find(line), std::string::npos);
-    red.replace(red.find(line), line.size(), "color[index] = vec4(8.0, 0.0, 0.0, 0.0);");
+    red.replace(red.find(line), line.size(), "rowOf(vec3(8.0, 0.0, 0.0))");
     writeFile(file, red);
     EXPECT_TRUE(comes([&](const Json&) { return middle().r > 200 && middle().g == 0; }));
     EXPECT_EQ(close(), 0);
