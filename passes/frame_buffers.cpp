@@ -64,8 +64,12 @@ uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings)
     constexpr uint64_t MOST_LINES = 65535 * 8; // of a picture: workgroups along an axis that any device takes
     const uint64_t pixels = uint64_t{settings.width} * settings.height;
     uint64_t most = std::min(limits.memoryBytes / 4 / bytesPerPixel(settings), uint64_t{UINT32_MAX});
-    for (const PixelBuffer& row : pixelBuffers(settings))
-        most = std::min(most, limits.tableBytes / std::max<uint64_t>(row.bytes, 1));
+    for (const PixelBuffer& row : pixelBuffers(settings)) {
+        const uint64_t limit = has(row.usage, gpu::Usage::Storage)
+                                   ? std::min(limits.storageBindingBytes, limits.tableBytes)
+                                   : limits.tableBytes;
+        most = std::min(most, limit / std::max<uint64_t>(row.bytes, 1));
+    }
     return uint32_t(std::min(most / pixels, MOST_LINES / settings.height));
 }
 

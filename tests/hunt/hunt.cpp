@@ -136,7 +136,7 @@ class Hunt
             hunt::examine(place.device, place.pipelines, hunt::readCase(stem + ".json"), seedOf(c) + ++tries);
         say("    smallest ({} tries): {}\n    {}.gltf and .json {}", tries, small.describe(), stem,
             again.found() ? "show it: " + again.describe()
-                          : fmt::format("do not show it; --seed {} --case {} does", options_.seed, c.number));
+                          : fmt::format("do not show it; --case {} with the same other options does", c.number));
         spent_["making finds small"] += secondsSince(start);
     }
 

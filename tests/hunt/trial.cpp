@@ -71,7 +71,6 @@ constexpr uint64_t FIRST_FRAMES = 8192;     // of the path tracer, in 8x8 pixels
 constexpr double Z_WANTED = 9;              // standard errors: the last level takes 5.7 of them
 constexpr double ROUNDING = 5e-4;           // of the larger mean: both methods run the same float32 code on the device
 constexpr double REFERENCE_ROUNDING = 3e-3; // float64 against octahedral normals, half colors and float32
-constexpr double REFERENCE_FLOOR = 1e-6;    // of the brightest pixel: what grazes a surface or not by such rounding
 
 class Examination
 {
@@ -159,10 +158,7 @@ class Examination
                              : compare(tried.estimate, truth.estimate, level, margin());
     }
 
-    Margin margin() const
-    {
-        return reference_ ? Margin(REFERENCE_ROUNDING, REFERENCE_FLOOR * brightest_) : Margin(ROUNDING);
-    }
+    double margin() const { return reference_ ? REFERENCE_ROUNDING : ROUNDING; }
 
     Finding report(int stage, const Region& region, const Comparison& comparison, const Estimate& tried,
                    const Estimate& truth) const
@@ -194,11 +190,6 @@ class Examination
             reference = stand_.reference(seedOf(0, 1), samples_);
         else
             stand_.frames(seedOf(0, 1), frames_, addTo(truth));
-        brightest_ = 0;
-        for (size_t i = 0; i < regions.size(); ++i)
-            for (size_t c = 0; c < 3 && regions[i].pixels.size() == 1; ++c)
-                brightest_ =
-                    std::max(brightest_, reference_ ? estimateOf(regions[i], reference, c).mean : truth[i][c].mean());
 
         const size_t coarse =
             size_t(std::ranges::count_if(regions, [](const Region& r) { return r.pixels.size() > 1; }));
@@ -220,7 +211,7 @@ class Examination
                 finding = report(0, regions[i], comparison, here, there);
             }
         finding.stages = 1;
-        if (!reference_) setDimness(truth);
+        if (!reference_) setDimness(regions, truth);
         return finding;
     }
 
@@ -269,9 +260,13 @@ class Examination
     }
 
     // What a pixel shows of its neighbors' dim paths is chosen as rarely as it is dim beside what they have brighter.
-    void setDimness(const std::vector<std::array<Moments, 3>>& truth)
+    void setDimness(const std::vector<Region>& regions, const std::vector<std::array<Moments, 3>>& truth)
     {
-        dimness_ = brightest_ > 0 ? std::min(truth[region_][channel_].mean() / brightest_, 1.0) : 1;
+        double brightest = 0;
+        for (size_t i = 0; i < regions.size(); ++i)
+            if (regions[i].pixels.size() == 1)
+                for (const Moments& channel : truth[i]) brightest = std::max(brightest, channel.mean());
+        dimness_ = brightest > 0 ? std::min(truth[region_][channel_].mean() / brightest, 1.0) : 1;
     }
 
     bool repeats()
@@ -295,7 +290,6 @@ class Examination
     bool pathTracing_, reference_;
     uint64_t runs_ = 0, frames_ = 0, samples_ = 0; // of the first stage
     size_t region_ = 0, channel_ = 0;              // what it named
-    double brightest_ = 0;                         // of all pixels and channels, in the truth
     double dimness_ = 1;                           // of that, beside the brightest pixel
     uint64_t growth_ = 1;                          // of the samples since then
 };

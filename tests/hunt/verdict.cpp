@@ -49,10 +49,10 @@ void Values::finish(double chancesEach, double reachOfEach)
     reach = reachOfEach;
 }
 
-Comparison compare(const Estimate& a, const Estimate& b, double level, const Margin& margin)
+Comparison compare(const Estimate& a, const Estimate& b, double level, double relativeMargin)
 {
     Comparison result;
-    result.margin = margin.absolute + margin.relative * std::max(std::abs(a.mean), std::abs(b.mean));
+    result.margin = relativeMargin * std::max(std::abs(a.mean), std::abs(b.mean));
     const double gap = a.mean - b.mean, rest = std::max(std::abs(gap) - result.margin, 0.0);
     Estimate nearer = a;
     nearer.mean = b.mean + std::copysign(rest, gap);
@@ -62,9 +62,9 @@ Comparison compare(const Estimate& a, const Estimate& b, double level, const Mar
     return result;
 }
 
-Comparison compare(const Values& a, const Values& b, double level, const Margin& margin)
+Comparison compare(const Values& a, const Values& b, double level, double relativeMargin)
 {
-    Comparison result = compare(a.estimate, b.estimate, level, margin);
+    Comparison result = compare(a.estimate, b.estimate, level, relativeMargin);
     if (result.answer != Answer::Differ) return result;
     const bool aIsHigher = a.estimate.mean > b.estimate.mean;
     const Values &high = aIsHigher ? a : b, &low = aIsHigher ? b : a;
@@ -73,7 +73,7 @@ Comparison compare(const Values& a, const Values& b, double level, const Margin&
     Estimate dimmer = low.estimate;
     dimmer.mean += unseenTail(low.values, low.estimate.mean);
     const bool still = low.chances >= ENOUGH_EVENTS && brighter.mean > dimmer.mean &&
-                       compare(brighter, dimmer, level, margin).answer == Answer::Differ;
+                       compare(brighter, dimmer, level, relativeMargin).answer == Answer::Differ;
     if (!still) result.answer = Answer::Undecided;
     return result;
 }

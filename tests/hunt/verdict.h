@@ -43,21 +43,14 @@ struct Comparison {
     statistics::Difference difference;
 };
 
-// What rounding may make of a mean.
-struct Margin {
-    Margin(double ofTheLarger, double always = 0) : relative(ofTheLarger), absolute(always) {}
-    double relative; // of the larger mean
-    double absolute; // in the quantity's unit, beside it
-};
-
-// Differ: by more than the margin at the level, and still so when both are changed in favor of
+// Differ: by more than `relativeMargin` of the larger mean at the level, and still so when both are changed in favor of
 // agreement: the larger one's rare and bright values, those that the other can be expected to have met fewer than
 // ENOUGH_EVENTS times, cut to the brightest of its other values; and the smaller one's mean raised by the tail that its
 // own largest values let one expect. Undecided: without these changes only, or the smaller one's chances are too few
 // for any of this.
-Comparison compare(const Values& a, const Values& b, double level, const Margin& margin);
+Comparison compare(const Values& a, const Values& b, double level, double relativeMargin);
 
 // Of the means alone, as the first tests do.
-Comparison compare(const statistics::Estimate& a, const statistics::Estimate& b, double level, const Margin& margin);
+Comparison compare(const statistics::Estimate& a, const statistics::Estimate& b, double level, double relativeMargin);
 
 } // namespace hunt

@@ -76,4 +76,9 @@ TEST(FrameBuffers, HoldAsManyRunsAsMemoryAndWorkgroupsAllow)
     EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 1024, 1024)), 512u / 80);
     EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 1, 16)), 65535u / 2);
     EXPECT_EQ(passes::maxRuns(LAVAPIPE, settingsOf(Method::Pt, Shift::Hybrid, 32768, 32768)), 0u);
+    gpu::Limits large = LAVAPIPE; // where the words of confidence end first
+    large.memoryBytes = uint64_t{1} << 40;
+    Settings replay = settingsOf(Method::RestirPt, Shift::Replay, 1024, 1024);
+    replay.spatial = 0;
+    EXPECT_EQ(passes::maxRuns(large, replay), 128u / 4);
 }

@@ -114,7 +114,7 @@ class Bsdf : public GpuTest
         for (const NamedMaterial& m : materials()) {
             use(m.material);
             std::vector<dvec3> views = {direction(0.1, 4), direction(-0.5, 2), direction(1, 0), direction(0.7, 1)};
-            if (isSlow(device())) views.resize(2); // minutes otherwise
+            if (isSlow(device()) && !std::getenv("TRICHROME_TEST_DRIVERS")) views.resize(2); // minutes otherwise
             for (const dvec3& view : views) {
                 SCOPED_TRACE(testing::Message() << m.name << " seen at cosine " << view.y);
                 check(dvec3(glm::normalize(glm::vec3(view)))); // as float32 has it
