@@ -24,7 +24,6 @@ void Inspector::run(const Tool& tool, gpu::Threads threads)
     gpu::CommandEncoder encoder = device.createCommandEncoder("inspect");
     tool.stage->encode(encoder, threads);
     device.queue().wait(device.queue().submit(std::move(encoder)));
-    device.queue().takeTimings(); // no frame's
 }
 
 std::vector<shared::Inspection> Inspector::reservoirs()

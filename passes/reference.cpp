@@ -73,13 +73,7 @@ Settings referenceSettings(const Settings& settings)
 {
     Settings traced; // what does not change the picture stays at its default, so that more finds it in the cache
     traced.method = Method::Pt;
-    traced.maxBounces = settings.maxBounces;
-    traced.pixelFilter = settings.pixelFilter;
-    traced.width = settings.width;
-    traced.height = settings.height;
-    traced.camera = settings.camera;
-    traced.environment = settings.environment;
-    traced.environmentScale = settings.environmentScale;
+    copy(traced, settings, {Role::Scene, Role::View, Role::Picture});
     traced.seed = ~settings.seed; // counting down from here, while repeats count up from theirs
     return traced;
 }

@@ -150,22 +150,16 @@ bool Renderer::seesTheSame(const std::optional<shared::CameraUniform>& from) con
 
 void Renderer::apply(const Settings& settings)
 {
-    Settings rest = settings;
-    const auto keep = [&](auto... field) { ((rest.*field = settings_.*field), ...); };
-    keep(&Settings::maxConfidence, &Settings::spatialRadius, &Settings::temporal, &Settings::frames, &Settings::seconds,
-         &Settings::average, &Settings::seed);
-    const bool compiled = rest == settings_; // all that differs is not compiled in
-    const bool reseeded = settings.seed != settings_.seed;
+    const Change change = changeBetween(settings_, settings);
     wait();
     settings_ = settings;
-    if (compiled) {
+    if (change < Change::Compile) {
         tune();
-        if (reseeded) reset();
-        return;
+    } else {
+        createBuffers();
+        createStages();
     }
-    createBuffers();
-    createStages();
-    reset();
+    if (change >= Change::Reset) reset();
 }
 
 // Stage by stage, as framePlan() lists them.
@@ -195,11 +189,7 @@ void Renderer::renderFrame()
     frame_.previousCamera = frame_.camera;
     ++frameCount_;
     ++historyFrames_;
-    if (inFlight_.size() > 2) {
-        device_.queue().wait(inFlight_.front());
-        inFlight_.pop_front();
-        collectTimings();
-    }
+    if (inFlight_.size() > 2) finishOldest();
 }
 
 void Renderer::reset()
@@ -219,17 +209,17 @@ void Renderer::setCamera(const scene::Camera& camera)
 
 void Renderer::wait()
 {
-    if (!inFlight_.empty()) device_.queue().wait(inFlight_.back());
-    inFlight_.clear();
-    collectTimings();
+    while (!inFlight_.empty()) finishOldest();
 }
 
-void Renderer::collectTimings()
+void Renderer::finishOldest()
 {
-    for (const gpu::Timing& timing : device_.queue().takeTimings()) {
+    const gpu::Submission frame = inFlight_.front();
+    inFlight_.pop_front();
+    device_.queue().wait(frame);
+    for (const gpu::Timing& timing : device_.queue().takeTimings(frame))
         milliseconds_[timing.label] += timing.milliseconds;
-        timedFrames_ += timing.label == plan_.back().shader;
-    }
+    ++timedFrames_;
 }
 
 image::Image Renderer::readColor()
@@ -267,8 +257,7 @@ std::vector<uint32_t> Renderer::readPreviousPixels()
     }
     gpu::CommandEncoder encoder = device_.createCommandEncoder("reproject");
     reproject_->encode(encoder, {settings_.width, settings_.height});
-    inFlight_.push_back(device_.queue().submit(std::move(encoder)));
-    wait();
+    device_.queue().wait(device_.queue().submit(std::move(encoder)));
     std::vector<uint32_t> list = device_.queue().readAs<uint32_t>(previousPixels_);
     list.resize(size_t{settings_.width} * settings_.height); // the buffer may be larger
     return list;

@@ -61,16 +61,14 @@ class Renderer
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1,
              std::shared_ptr<PipelinePool> pipelines = nullptr);
     // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
-    // that methods can be compared in turns; wait() after each frame of either keeps their times apart. The environment
-    // must be the sibling's.
+    // that methods can be compared in turns. The environment must be the sibling's.
     Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
     uint32_t runs() const { return runs_; }
     void reset(); // forgets all frames
-    // From the next frame on. M_c, the neighbors' radius and temporal reuse take effect at once and keep history and
-    // film, the seed starts over, anything else also compiles anew. The scene, its environment and the camera stay.
+    // From the next frame on; does what the settings' `Change` says. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
     void recompile(); // takes all stages from pipelines() anew, once that holds other ones; starts over
     const Settings& settings() const { return settings_; }
@@ -104,7 +102,7 @@ class Renderer
     bool seesTheSame(const std::optional<shared::CameraUniform>& from) const;
     void tune();
     void encodeFrame(gpu::CommandEncoder& encoder, const FrameState& state);
-    void collectTimings();
+    void finishOldest(); // of the frames in flight
     uint32_t pictureHeight() const { return settings_.height * runs_; }
     std::vector<const gpu::Buffer*> lastingBuffers() const;
 

@@ -5,6 +5,7 @@
 #include "engine/base/json.h"
 #include "engine/base/shown.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -236,11 +237,37 @@ void set(Settings& settings, std::string_view name, std::string_view text)
     if (!found) throw unknown(name);
 }
 
-std::vector<std::pair<std::string, std::string>> toText(const Settings& settings)
+std::vector<std::pair<std::string, std::string>> toText(const Settings& settings,
+                                                        const std::function<bool(const Knob&)>& wanted)
 {
     std::vector<std::pair<std::string, std::string>> texts;
-    visitSettings(settings, [&](const Knob& knob, auto&& field) { texts.emplace_back(knob.name, textOf(field)); });
+    visitSettings(settings, [&](const Knob& knob, auto&& field) {
+        if (wanted(knob)) texts.emplace_back(knob.name, textOf(field));
+    });
     return texts;
+}
+
+std::vector<Difference> differences(const Settings& a, const Settings& b)
+{
+    std::vector<Difference> list;
+    visitSettings(a, [&](const Knob& knob, auto&& field) { list.push_back({knob, textOf(field), {}}); });
+    size_t i = 0;
+    visitSettings(b, [&](const Knob&, auto&& field) { list[i++].b = textOf(field); });
+    std::erase_if(list, [](const Difference& one) { return one.a == one.b; });
+    return list;
+}
+
+Change changeBetween(const Settings& a, const Settings& b)
+{
+    Change most = Change::Nothing;
+    for (const Difference& one : differences(a, b)) most = std::max(most, one.knob.change);
+    return most;
+}
+
+void copy(Settings& to, const Settings& from, std::initializer_list<Role> roles)
+{
+    for (const Difference& one : differences(to, from))
+        if (std::ranges::find(roles, one.knob.role) != roles.end()) set(to, one.knob.name, one.b);
 }
 
 nlohmann::ordered_json toJson(const Settings& settings)

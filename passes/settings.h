@@ -1,8 +1,11 @@
 #pragma once
 // Every knob of the renderer, once. Command line, JSON presets, the panel, image metadata and the settings hash all
-// visit the same list. Adding a setting: one field, one line in visitSettings.
+// visit the same list, and what a setting decides and what changing it takes stand there too. Adding a setting: one
+// field, one line in visitSettings.
 
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,9 +44,31 @@ struct Settings {
     bool operator==(const Settings&) const = default;
 };
 
-// What a person needs to know about a knob. The range is closed; choices, texts and sizes ignore it.
+// What a knob decides. Scene, View and Picture together say which picture is right; the others how one gets there.
+enum class Role : uint8_t {
+    Scene,     // what there is
+    View,      // from where it is seen, in how many pixels
+    Picture,   // which of its light a pixel shows
+    Estimator, // how that is estimated: the mean is the same
+    Sampling,  // with which random numbers
+    Stopping,  // when a command ends
+    Output     // which of the finished pictures is written
+};
+
+// What a renderer does when a knob changes, each more than the one before.
+enum class Change : uint8_t {
+    Nothing,
+    Tune,    // from the next frame on; history and film stay
+    Reset,   // starts over
+    Compile, // stages and buffers anew; starts over
+    Reload   // the scene anew, by whoever has loaded it
+};
+
+// What is to be known about a knob. The range is closed; choices, texts and sizes ignore it.
 struct Knob {
     const char* name; // of the option, the preset's key, the metadata
+    Role role;        // neither has a default: a knob without them does not compile
+    Change change;
     double low = 0;
     double high = 0;
     const char* unit; // "" when a number has none
@@ -68,23 +93,23 @@ template <class AnySettings, class Visitor>
 void visitSettings(AnySettings& s, Visitor&& visit)
 {
     // clang-format off
-    visit(Knob{"method", 0, 0, "", "How light is computed. pt: plain path tracing; restir-pt: ReSTIR PT, one reservoir, luminance target; rgb-restir: one reservoir per channel; grouped-restir: one for red and green, one for blue. All unbiased."}, s.method);
-    visit(Knob{"shift", 0, 0, "", "ReSTIR's shift map: how a path moves to another pixel. Unbiased; replay costs the most rays."}, s.shift);
-    visit(Knob{"max-confidence", 1, 1048576, "frames", "M_c of ReSTIR: the most that history may count against a new frame. Larger: less noise, more correlation between frames. Unbiased, free."}, s.maxConfidence);
-    visit(Knob{"temporal", 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
-    visit(Knob{"spatial", 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
-    visit(Knob{"spatial-radius", 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
-    visit(Knob{"color", 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs. One picture for rgb-restir, whose samples have one color. Unbiased, free."}, s.color);
-    visit(Knob{"max-bounces", 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
-    visit(Knob{"pixel-filter", 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
-    visit(Knob{"size", 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});
-    visit(Knob{"camera", 0, 0, "", "Name or index of one of the scene's cameras; empty: the first."}, s.camera);
-    visit(Knob{"seed", 0, 18446744073709551615.0, "", "Of all random numbers: equal settings, seed and device give equal pixels. Unbiased, free."}, s.seed);
-    visit(Knob{"frames", 1, 1073741824, "frames", "How many frames to render, each one sample per pixel. Cost grows with it. Unbiased."}, s.frames);
-    visit(Knob{"seconds", 0, 1e7, "s", "Stop after this time of rendering instead of after a number of frames; 0: by frames. Unbiased."}, s.seconds);
-    visit(Knob{"average", 0, 0, "", "on: write the mean of all frames; off: write the last frame. Both unbiased; free."}, s.average);
-    visit(Knob{"environment", 0, 0, "", "Equirectangular picture (.exr or .hdr) that surrounds the scene: its middle lies towards +x, to the right of that +z, its left and right edges towards -x, its top row above (+y); a camera that is not turned looks along -z, a quarter from the left. Empty: the scene's own."}, s.environment);
-    visit(Knob{"environment-scale", 0, 1e6, "", "Multiplies the radiance of the environment. Changes the scene, not the estimate; free."}, s.environmentScale);
+    visit(Knob{"method", Role::Estimator, Change::Compile, 0, 0, "", "How light is computed. pt: plain path tracing; restir-pt: ReSTIR PT, one reservoir, luminance target; rgb-restir: one reservoir per channel; grouped-restir: one for red and green, one for blue. All unbiased."}, s.method);
+    visit(Knob{"shift", Role::Estimator, Change::Compile, 0, 0, "", "ReSTIR's shift map: how a path moves to another pixel. Unbiased; replay costs the most rays."}, s.shift);
+    visit(Knob{"max-confidence", Role::Estimator, Change::Tune, 1, 1048576, "frames", "M_c of ReSTIR: the most that history may count against a new frame. Larger: less noise, more correlation between frames. Unbiased, free."}, s.maxConfidence);
+    visit(Knob{"temporal", Role::Estimator, Change::Tune, 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
+    visit(Knob{"spatial", Role::Estimator, Change::Compile, 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
+    visit(Knob{"spatial-radius", Role::Estimator, Change::Tune, 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
+    visit(Knob{"color", Role::Estimator, Change::Compile, 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs. One picture for rgb-restir, whose samples have one color. Unbiased, free."}, s.color);
+    visit(Knob{"max-bounces", Role::Picture, Change::Compile, 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
+    visit(Knob{"pixel-filter", Role::Picture, Change::Compile, 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
+    visit(Knob{"size", Role::View, Change::Compile, 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});
+    visit(Knob{"camera", Role::View, Change::Compile, 0, 0, "", "Name or index of one of the scene's cameras; empty: the first."}, s.camera);
+    visit(Knob{"seed", Role::Sampling, Change::Reset, 0, 18446744073709551615.0, "", "Of all random numbers: equal settings, seed and device give equal pixels. Unbiased, free."}, s.seed);
+    visit(Knob{"frames", Role::Stopping, Change::Nothing, 1, 1073741824, "frames", "How many frames to render, each one sample per pixel. Cost grows with it. Unbiased."}, s.frames);
+    visit(Knob{"seconds", Role::Stopping, Change::Nothing, 0, 1e7, "s", "Stop after this time of rendering instead of after a number of frames; 0: by frames. Unbiased."}, s.seconds);
+    visit(Knob{"average", Role::Output, Change::Nothing, 0, 0, "", "on: write the mean of all frames; off: write the last frame. Both unbiased; free."}, s.average);
+    visit(Knob{"environment", Role::Scene, Change::Reload, 0, 0, "", "Equirectangular picture (.exr or .hdr) that surrounds the scene: its middle lies towards +x, to the right of that +z, its left and right edges towards -x, its top row above (+y); a camera that is not turned looks along -z, a quarter from the left. Empty: the scene's own."}, s.environment);
+    visit(Knob{"environment-scale", Role::Scene, Change::Reload, 0, 1e6, "", "Multiplies the radiance of the environment. Changes the scene, not the estimate; free."}, s.environmentScale);
     // clang-format on
 }
 
@@ -100,8 +125,22 @@ std::vector<KnobText> describeSettings(const Settings& initial = {});
 // Sets one knob from text as on the command line. Throws Error: unknown name, wrong type, out of range.
 void set(Settings& settings, std::string_view name, std::string_view text);
 
-// Name and value of every knob, in order; set() reads each value back exactly.
-std::vector<std::pair<std::string, std::string>> toText(const Settings& settings);
+// Name and value of every knob that is wanted, in order; set() reads each value back exactly.
+std::vector<std::pair<std::string, std::string>> toText(
+    const Settings& settings, const std::function<bool(const Knob&)>& wanted = [](const Knob&) { return true; });
+
+// The knobs in which two settings differ, and their values as text.
+struct Difference {
+    Knob knob;
+    std::string a, b;
+};
+std::vector<Difference> differences(const Settings& a, const Settings& b);
+
+// All that a renderer must do to get from one to the other.
+Change changeBetween(const Settings& a, const Settings& b);
+
+// Sets the knobs of these roles as they are in `from`.
+void copy(Settings& to, const Settings& from, std::initializer_list<Role> roles);
 
 // An object with the knobs' names: numbers, true or false, texts. apply() takes any subset of them and throws Error
 // naming the key: unknown, wrong type, out of range.

@@ -207,7 +207,7 @@ class CommandEncoder
 
 using Submission = uint64_t; // grows by one per submit; 0 is "before the first"
 
-// Device time of one label in one finished submission.
+// Device time of one label in one submission.
 struct Timing {
     std::string label;
     double milliseconds = 0;
@@ -244,8 +244,9 @@ class Queue
     };
     Readback readLater(const Buffer& buffer);
     std::vector<std::byte> take(const Readback& readback); // waits if need be
-    // Of submissions finished since the last call, in order. Only the latest few ten thousand are kept.
-    std::vector<Timing> takeTimings();
+    // What a finished submission took, label by label; once: empty when they were taken, and while it runs. Of the
+    // latest thousand submissions.
+    std::vector<Timing> takeTimings(Submission submission);
 
   private:
     DeviceState* device_;

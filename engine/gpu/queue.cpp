@@ -13,7 +13,7 @@ namespace gpu
 namespace
 {
 
-constexpr size_t MAX_TIMINGS = 1 << 16; // a program that never takes its timings must not fill the memory with them
+constexpr size_t MAX_TIMED = 1000; // submissions: a program that never takes its timings must not fill the memory
 
 } // namespace
 
@@ -135,10 +135,9 @@ void DeviceState::retire()
 
 void DeviceState::collect(const Flight& flight)
 {
-    if (timings.size() > MAX_TIMINGS) timings.erase(timings.begin(), timings.begin() + MAX_TIMINGS / 2);
     const uint32_t bits = physical.timestampBits;
     const uint64_t mask = bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
-    const size_t first = timings.size();
+    std::vector<Timing> times;
     for (size_t i = 0; i < flight.timestamps.dispatches.size(); ++i) {
         const Timestamps::Timed& dispatch = flight.timestamps.dispatches[i];
         std::array<uint64_t, 2> ticks = {};
@@ -149,13 +148,15 @@ void DeviceState::collect(const Flight& flight)
         const double milliseconds =
             double((ticks[1] - ticks[0]) & mask) * double(properties.limits.timestampPeriod) * 1e-6;
         *dispatch.groupMilliseconds = milliseconds / double(dispatch.groups);
-        const auto same = std::find_if(timings.begin() + std::ptrdiff_t(first), timings.end(),
-                                       [&](const Timing& t) { return t.label == dispatch.label; });
-        if (same != timings.end())
+        const auto same = std::ranges::find(times, dispatch.label, &Timing::label);
+        if (same != times.end())
             same->milliseconds += milliseconds;
         else
-            timings.push_back({dispatch.label, milliseconds});
+            times.push_back({dispatch.label, milliseconds});
     }
+    if (times.empty()) return;
+    timings.emplace(flight.submission, std::move(times));
+    if (timings.size() > MAX_TIMED) timings.erase(timings.begin());
 }
 
 // ------------------------------------------------------------------------------------------------- things to use again
@@ -283,10 +284,11 @@ std::vector<std::byte> Queue::take(const Readback& readback)
     return {begin, begin + readback.buffer.size()};
 }
 
-std::vector<Timing> Queue::takeTimings()
+std::vector<Timing> Queue::takeTimings(Submission submission)
 {
     device_->retire();
-    return std::exchange(device_->timings, {});
+    const auto node = device_->timings.extract(submission);
+    return node ? std::move(node.mapped()) : std::vector<Timing>();
 }
 
 } // namespace gpu

@@ -234,7 +234,7 @@ struct DeviceState {
     std::vector<Parked> parked;
     std::vector<VkCommandBuffer> freeCommandBuffers;
     std::vector<VkQueryPool> freeQueryPages;
-    std::vector<Timing> timings;
+    std::map<Submission, std::vector<Timing>> timings; // of finished ones, until they are taken
     bool stalled = false; // for good: nothing can be waited for or destroyed
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;

@@ -45,7 +45,7 @@ CONFINED = {
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
-SHADER_ROOTS = ["shaders", "shaders/path"]  # as CMakeLists.txt gives them to glslang
+SHADER_ROOTS = ["shaders", "shaders/path"]  # as shaders/CMakeLists.txt gives them to glslang
 
 
 def owner(path, folders):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -202,6 +203,34 @@ TEST_F(RendererTest, ListsTheStagesThatItsFramesConsistOf)
     renderer.pipelines()->clear();
     renderer.recompile();
     EXPECT_EQ(frames(renderer, 3), before);
+}
+
+// Each knob, changed under a running renderer, keeps or forgets what its `Change` says; whoever starts over renders
+// what a new renderer does.
+TEST_F(RendererTest, DoesWhatTheChangeOfEachKnobSays)
+{
+    using passes::Change;
+    const std::map<std::string, std::string> others = {
+        {"method", "restir-pt"}, {"shift", "replay"},     {"max-confidence", "3"}, {"temporal", "off"},
+        {"spatial", "1"},        {"spatial-radius", "4"}, {"color", "chosen"},     {"max-bounces", "1"},
+        {"pixel-filter", "box"}, {"size", "12x9"},        {"camera", "0"},         {"seed", "5"},
+        {"frames", "7"},         {"seconds", "7"},        {"average", "off"}};
+    passes::Settings base = settings_;
+    base.method = passes::Method::RgbRestir;
+    for (const passes::KnobText& knob : passes::describeSettings()) {
+        passes::Settings next = base;
+        if (others.contains(knob.name)) passes::set(next, knob.name, others.at(knob.name));
+        const Change change = passes::changeBetween(base, next);
+        if (knob.name.starts_with("environment")) continue; // the scene's, which a renderer keeps
+        ASSERT_EQ(passes::differences(base, next).size(), 1u) << knob.name << " needs another value above";
+        Renderer renderer = make(base);
+        frames(renderer, 2);
+        renderer.apply(next);
+        EXPECT_EQ(renderer.frameCount(), change >= Change::Reset ? 0u : 2u) << knob.name;
+        if (change < Change::Reset) continue;
+        Renderer fresh = make(next);
+        EXPECT_EQ(frames(renderer, 2), frames(fresh, 2)) << knob.name;
+    }
 }
 
 } // namespace

@@ -182,6 +182,51 @@ TEST(Settings, MessagesNameTheKnobTheValueAndWhatItTakes)
     EXPECT_NE(messageOf([&] { passes::set(s, "spp", "9"); }).find("no setting \"spp\""), std::string::npos);
 }
 
+TEST(Settings, DifferencesNameWhatDiffersWithBothValues)
+{
+    EXPECT_TRUE(passes::differences(unusual(), unusual()).empty());
+    EXPECT_EQ(passes::differences({}, unusual()).size(), passes::toText({}).size());
+    Settings s;
+    s.spatial = 1;
+    const std::vector<passes::Difference> list = passes::differences({}, s);
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].knob.name, std::string("spatial"));
+    EXPECT_EQ(list[0].a, "3");
+    EXPECT_EQ(list[0].b, "1");
+}
+
+TEST(Settings, ChangesTakeWhatTheirStrongestKnobTakes)
+{
+    using passes::Change;
+    Settings s;
+    EXPECT_EQ(changeBetween({}, s), Change::Nothing);
+    s.frames = 7;
+    EXPECT_EQ(changeBetween({}, s), Change::Nothing);
+    s.maxConfidence = 7;
+    EXPECT_EQ(changeBetween({}, s), Change::Tune);
+    s.seed = 7;
+    EXPECT_EQ(changeBetween({}, s), Change::Reset);
+    s.maxBounces = 7;
+    EXPECT_EQ(changeBetween({}, s), Change::Compile);
+    s.environmentScale = 7;
+    EXPECT_EQ(changeBetween({}, s), Change::Reload);
+}
+
+TEST(Settings, CopyTakesKnobsOfTheseRolesAndNoOthers)
+{
+    using passes::Role;
+    for (const Role role :
+         {Role::Scene, Role::View, Role::Picture, Role::Estimator, Role::Sampling, Role::Stopping, Role::Output}) {
+        Settings s;
+        passes::copy(s, unusual(), {role});
+        const std::vector<passes::Difference> taken = passes::differences({}, s),
+                                              left = passes::differences(s, unusual());
+        EXPECT_FALSE(taken.empty()) << int(role);
+        for (const passes::Difference& one : taken) EXPECT_EQ(one.knob.role, role) << one.knob.name;
+        for (const passes::Difference& one : left) EXPECT_NE(one.knob.role, role) << one.knob.name;
+    }
+}
+
 TEST(Settings, TheHashTellsEverySingleChange)
 {
     std::set<std::string> hashes = {passes::hash(Settings{})};

@@ -14,9 +14,9 @@ namespace
 {
 
 // When a render ends, and what is written then, does not change its frames.
-bool decidesFrames(const std::string& setting)
+bool decidesFrames(const passes::Knob& knob)
 {
-    return setting != "frames" && setting != "seconds" && setting != "average";
+    return knob.role != passes::Role::Stopping && knob.role != passes::Role::Output;
 }
 
 std::string hexadecimal(uint64_t value)
@@ -31,8 +31,7 @@ passes::Identity identityOf(const passes::Renderer& renderer, const RunReport& r
                                  {"driver", report.adapter.driver},
                                  {"device-tuning", gpu::toText(report.adapter.tuning)},
                                  {"scene's contents", hexadecimal(renderer.scene().fingerprint())}};
-    for (const auto& [name, value] : passes::toText(report.settings))
-        if (decidesFrames(name)) identity.emplace_back(name, value);
+    for (auto& text : passes::toText(report.settings, decidesFrames)) identity.push_back(std::move(text));
     for (const auto& [name, value] : report.extra) {
         if (name == "camera-path") // wherever it lies
             identity.emplace_back("camera path's contents", hexadecimal(fingerprint(files::read(value))));

@@ -41,19 +41,10 @@ void applyWord(passes::Settings& settings, const std::string& word, bool first)
 // What must be the same for all: the picture that they estimate, and what the command itself decides.
 void requireComparable(const passes::Settings& settings, const passes::Settings& base, const std::string& entry)
 {
-    passes::Settings own = base;
-    own.method = settings.method;
-    own.shift = settings.shift;
-    own.maxConfidence = settings.maxConfidence;
-    own.temporal = settings.temporal;
-    own.spatial = settings.spatial;
-    own.spatialRadius = settings.spatialRadius;
-    own.color = settings.color;
-    const auto a = passes::toText(own), b = passes::toText(settings);
-    for (size_t i = 0; i < a.size(); ++i)
-        if (a[i] != b[i])
+    for (const passes::Difference& one : passes::differences(base, settings))
+        if (one.knob.role != passes::Role::Estimator)
             throw UsageError("--methods: \"{}\" sets {} to \"{}\", but what is compared must share it; it is \"{}\".",
-                             entry, a[i].first, b[i].second, a[i].second);
+                             entry, one.knob.name, one.b, one.a);
 }
 
 } // namespace

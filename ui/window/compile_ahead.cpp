@@ -200,7 +200,6 @@ void CompileAhead::runOnce(const Stage& stage)
     gpu::CommandEncoder encoder = device.createCommandEncoder("compile ahead");
     encoder.dispatch(dispatch);
     device.queue().wait(device.queue().submit(std::move(encoder)));
-    device.queue().takeTimings();
 }
 
 } // namespace ui

@@ -21,15 +21,6 @@ double secondsSince(Clock::time_point start)
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Settings that only say which picture is read, or when `render` stops.
-passes::Settings withoutReading(passes::Settings settings)
-{
-    settings.average = true;
-    settings.frames = 1;
-    settings.seconds = 0;
-    return settings;
-}
-
 uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
 {
     uint64_t sum = 0;
@@ -43,11 +34,7 @@ passes::Settings settingsOf(const Order& order, Side side)
 {
     const passes::Settings& world = order.settings;
     passes::Settings settings = side == B && order.rival ? *order.rival : world;
-    settings.width = world.width;
-    settings.height = world.height;
-    settings.camera = world.camera;
-    settings.environment = world.environment;
-    settings.environmentScale = world.environmentScale;
+    passes::copy(settings, world, {passes::Role::Scene, passes::Role::View});
     if (order.moving) {
         settings.width = std::max(settings.width / MOVING_DIVISOR, 1u);
         settings.height = std::max(settings.height / MOVING_DIVISOR, 1u);
@@ -80,7 +67,7 @@ void Contender::follow(const Order& order, const scene::Scene& scene)
 {
     const passes::Settings next = settingsOf(order, side_), now = renderer_->settings();
     const bool cameraChanged = order.pose != followed_.pose || next.camera != now.camera;
-    const bool settingsChanged = withoutReading(next) != withoutReading(now);
+    const bool settingsChanged = passes::changeBetween(now, next) > passes::Change::Nothing;
     if (next != now) {
         inspector_.reset(); // its stage is over buffers that apply() may replace
         try {

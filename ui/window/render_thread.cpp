@@ -157,9 +157,7 @@ void RenderThread::closeDevice()
 bool RenderThread::sameWorld(const Order& order) const
 {
     const passes::Settings &next = order.settings, &now = running_.settings;
-    if (order.scene != running_.scene || next.environment != now.environment ||
-        next.environmentScale != now.environmentScale)
-        return false;
+    if (order.scene != running_.scene || passes::changeBetween(now, next) == passes::Change::Reload) return false;
     const auto parallel = [&](const std::string& name) { // what is compiled depends on it
         return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
     };

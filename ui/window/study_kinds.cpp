@@ -130,7 +130,6 @@ class CorrelationStudy : public Study
         }
         const size_t known = chain_->points().size();
         chain_->step();
-        chainRenderer_->wait(); // so that its times are not taken for another's
         const bool news = chain_->points().size() > known;
         if (news) take(chain_->points().back());
         if (chain_->frame() >= std::min(settings_.maxConfidence, LONGEST_CHAIN)) {
