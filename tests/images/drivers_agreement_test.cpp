@@ -3,6 +3,7 @@
 // few paths on which rounding decides a branch. By default three of the twenty, all with TRICHROME_TEST_DRIVERS=1
 // (ctest -R drivers); with TRICHROME_TEST_DRIVERS=ICD.json all of them on that driver in SwiftShader's place.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +53,7 @@ class DriversAgreement : public testing::TestWithParam<std::tuple<scene::BuiltIn
         const std::string other = asked == nullptr || std::string(asked) == "1" ? SWIFTSHADER : asked;
         for (const std::string& driver : {std::string(LAVAPIPE), other})
             if (!std::filesystem::exists(driver)) GTEST_SKIP() << "SKIPPED, NOT TESTED: there is no " << driver;
-        setenv("VK_ICD_FILENAMES", (std::string(LAVAPIPE) + ":" + other).c_str(), 1);
+        setenv("VK_ICD_FILENAMES", fmt::format("{}:{}", LAVAPIPE, other).c_str(), 1);
         for (size_t i = 0; i < DRIVERS; ++i)
             if (!drivers_[i]) drivers_[i] = std::make_unique<Driver>(std::to_string(i));
         ASSERT_NE(drivers_[0]->device.adapter().driver, drivers_[1]->device.adapter().driver);

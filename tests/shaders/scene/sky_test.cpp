@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "engine/scene/shapes.h"
 #include "tests/support/gpu_fixture.h"
@@ -50,11 +51,7 @@ class Sky : public GpuTest, public testing::WithParamInterface<Size>
     static std::vector<glm::uvec2> texels()
     {
         const auto [columns, rows] = GetParam();
-        const auto some = [](uint32_t count) {
-            std::vector<uint32_t> result = {0, count / 3, count / 2, count - 1};
-            result.erase(std::unique(result.begin(), result.end()), result.end());
-            return result;
-        };
+        const auto some = [](uint32_t count) { return std::set<uint32_t>{0, count / 3, count / 2, count - 1}; };
         std::vector<glm::uvec2> result;
         for (uint32_t row = 0; row < rows; ++row)
             for (const uint32_t column : some(columns)) result.emplace_back(column, row);
