@@ -104,6 +104,7 @@ if (only eq '' || only eq 'scaling') {
     array SERIES[7] = ['triangles', 'pixels', 'bounces', 'lights', 'confidence', 'neighbors', 'channels']
     array AXES[7] = ['triangles', 'pixels', 'bounces at most', 'emissive triangles', 'M_c, frames', 'K, neighbors', 'reservoirs a pixel']
     do for [i=1:7] {
+        if (system("grep -c '^".SERIES[i].",' '".scaling."'") eq '0') { set multiplot next; continue }
         set xlabel AXES[i]
         is(method) = strcol(1) eq SERIES[i] && (method eq '' || strcol(2) eq method)
         set yrange [*:*]
