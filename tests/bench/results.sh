@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The measurements of RESULTS.md, "Error against run time": each scene with a resting and with a moving camera.
+# The measurements of RESULTS.md under motion and at rest: each scene with a resting and with a moving camera.
 # tests/bench/results.sh PROGRAM DIR [SCENE...]   (SPONZA names that scene's file; SIZE, SECONDS_EACH, FRAMES, RUNS,
 # REFERENCE_FRAMES and DEVICE shorten or lengthen it)
 set -euo pipefail

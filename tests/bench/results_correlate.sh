@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of RESULTS.md, section "Autocovariance": tests/bench/results_correlate.sh PROGRAM DIR [SCENE...]
+# The autocovariance of RESULTS.md: tests/bench/results_correlate.sh PROGRAM DIR [SCENE...]
 # Five scenes or those named, measured to M = FRAMES and predicted to 32768 (SIZE, RUNS, BATCH and FRAMES shorten or lengthen it;
 # SPONZA names that scene's file). Many runs of few pixels: tails are heavy, and the runs must tell how much. What DIR holds already is not measured again.
 set -euo pipefail

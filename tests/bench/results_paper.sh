@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The table "PSNR and SSIM" of RESULTS.md: tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
+# PSNR and SSIM beside the paper, docs/data/history_alone.csv: tests/bench/results_paper.sh PROGRAM DIR [SCENE...]
 # Temporal reuse alone, random replay, resting camera, after FRAMES frames of history (SIZE, FRAMES, RUNS, REFERENCE_FRAMES
 # shorten or lengthen it; SPONZA names that scene's file).
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Means over repeats of what `converge` measured, as the tables of RESULTS.md: results_table.py DIR...
+"""Means over repeats of what `converge` measured, for docs/data/motion.csv: results_table.py DIR...
 
 A line for each method and kind of picture, at the last number of frames that every repeat reached.
 """

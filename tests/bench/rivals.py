@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Other path tracers beside Trichrome: RESULTS.md, "Other path tracers".
+"""Other path tracers beside Trichrome: RESULTS.md, "How fast is it beside others?"
 
   rivals.py TRICHROME DIR [--rounds N] [--blender PROGRAM] [--samples N]
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""How time and memory of a frame grow with what a scene and its settings hold: RESULTS.md, "Scaling".
+"""How time and memory of a frame grow with what a scene and its settings hold: RESULTS.md,
+"How do time and memory grow?"
 
   scaling.py TRICHROME DIR [SERIES...]     series: triangles, pixels, bounces, lights, neighbors, channels, confidence
 
-Writes DIR/scaling.csv (a line a point, kept when measured again), DIR/scaling.svg (by gnuplot), and the tables to stdout.
+Writes DIR/scaling.csv (a line a point, kept when measured again), DIR/plot_scaling.svg (by plots.gp), and the tables to stdout.
 Time is the stages' time of a frame: that of a long render less that of a short one, so that first frames do not count; the
 median of --rounds. Wants a quiet machine. Scenes of many triangles and lights are written as glTF: tiles, each a node.
 """
@@ -23,7 +24,6 @@ import gltf
 COLUMNS = ["series", "method", "x", "ms", "rays", "device_bytes", "peak_bytes", "bvh_seconds"]
 BASE = {"size": "160x90", "max-bounces": 3, "spatial": 3, "shift": "hybrid", "max-confidence": 20}
 METHODS = ["pt", "restir-pt", "rgb-restir"]
-COLORS = {"pt": "#808080", "restir-pt": "#1f77b4", "rgb-restir": "#d62728", "all": "#2ca02c"}
 CHANNELS = {"restir-pt": 1, "grouped-restir": 2, "rgb-restir": 3}
 # Of what the time should be a power: the law that each series should follow, and over which part it is fitted.
 LAWS = {
@@ -145,7 +145,6 @@ def report(rows, folder):
     by = {}
     for row in rows:
         by.setdefault(row["series"], {}).setdefault(row["method"], []).append(row)
-    plots = []
     for series, methods in by.items():
         if series == "channels":  # one curve
             methods = {"all": [row for rows in methods.values() for row in rows]}
@@ -157,15 +156,8 @@ def report(rows, folder):
             cells = ", ".join(f"{x:g}: {ms:.3g}" for x, ms in pairs)
             memory = f"{float(found[0]['device_bytes']) / 1e6:.3g} to {float(found[-1]['device_bytes']) / 1e6:.3g} MB"
             print(f"| {method} | {cells} | {exponent(pairs):.2f} | {memory} |")
-            (folder / f"{series}-{method}.dat").write_text("".join(f"{x} {ms}\n" for x, ms in pairs))
-        logarithmic = series not in ("neighbors", "channels")
-        curves = ", ".join(f"'{series}-{method}.dat' with linespoints pt 7 ps 0.4 lc rgb '{COLORS[method]}' title '{method}'"
-                           for method in methods)
-        axes = "set logscale xy; set format x '10^{%L}'" if logarithmic else "unset logscale; set format x '%g'; set yrange [0:*]"
-        plots.append(f"{axes}\nset title '{series}'\nplot {curves}\nunset yrange; set autoscale\n")
-    script = "set terminal svg size 1100,620 font 'sans,11'\nset output 'scaling.svg'\nset ylabel 'ms'\n" \
-             "set key bottom right\nset grid\nset multiplot layout 2,4\n" + "".join(plots)
-    subprocess.run(["gnuplot"], input=script.encode(), cwd=folder, check=True)
+    plots = pathlib.Path(__file__).with_name("plots.gp")
+    subprocess.run(["gnuplot", "-e", f"data='{folder}'; out='{folder}'; only='scaling'", plots], check=True)
 
 
 def main():

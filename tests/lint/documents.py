@@ -11,7 +11,7 @@ FOLDERS = ["assets", "docs", "engine", "packaging", "passes", "shaders", "tests"
 README_WORDS, ARCHITECTURE_LINES = 500, 200
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 # A path of this repository in running text or in a comment: folder/.../file.ending, without patterns.
-NAMED = re.compile(r"(?<![\w/.<*-])((?:" + "|".join(FOLDERS) + r")/[\w./-]*\w\.(?:md|py|sh|cpp|h|glsl|comp|svg|png))\b")
+NAMED = re.compile(r"(?<![\w/.<*-])((?:" + "|".join(FOLDERS) + r")/[\w./-]*\w\.(?:md|py|sh|gp|cpp|h|glsl|comp|svg|png|csv))\b")
 DOCUMENT = re.compile(r"(?<![\w/.])([A-Z_]+\.md)\b")  # at the top, in docs, or beside the file that names it
 
 
