@@ -2,7 +2,6 @@
 
 #include "passes/estimator.h"
 
-#include <string_view>
 #include <type_traits>
 
 namespace passes
@@ -43,36 +42,16 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
         v.COLOR_READING = uint32_t(colorReading(settings));
         v.ONE_CHANNEL = oneHot(estimatorOf(settings.method));
     }
-    v.HAS_ALPHA = features.alpha;
-    v.HAS_SPECULAR = features.specular;
-    v.HAS_ROUGH = features.rough;
-    v.HAS_DIRAC = features.dirac;
-    v.HAS_TRANSMISSION = features.transmission;
-    v.HAS_SOLID = features.solid;
-    v.HAS_EMISSIVE = features.emissive;
-    v.HAS_PUNCTUAL = features.punctual;
-    v.HAS_DIRECTIONAL = features.directional;
-    v.HAS_ENVIRONMENT = features.environment;
-    v.HAS_UNLIT = features.unlit;
-    v.HAS_VERTEX_COLORS = features.vertexColors;
-    v.HAS_SECOND_UV = features.secondUv;
-    v.HAS_TEXTURE_TRANSFORM = features.textureTransform;
-    v.HAS_BASE_COLOR_TEXTURE = features.baseColorTexture;
-    v.HAS_METALLIC_ROUGHNESS_TEXTURE = features.metallicRoughnessTexture;
-    v.HAS_NORMAL_MAP = features.normalMap;
-    v.HAS_EMISSIVE_TEXTURE = features.emissiveTexture;
-    v.HAS_TRANSMISSION_TEXTURE = features.transmissionTexture;
-    v.HAS_SPECULAR_TEXTURE = features.specularTexture;
-    v.HAS_MANY_MATERIALS = features.manyMaterials;
-    v.HAS_DEEP_TEXTURE = features.deepTexture;
+#define COPY_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT) v.NAME = features.NAME;
+    SCENE_FEATURES(COPY_FEATURE)
+#undef COPY_FEATURE
     return v;
 }
 
 Variant withAllFeatures(Variant variant)
 {
-#define ADD_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT)                                                                     \
-    if (std::string_view(#NAME).starts_with("HAS_")) variant.NAME = DEFAULT;
-    VARIANT_CONSTANTS(ADD_FEATURE)
+#define ADD_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT) variant.NAME = true;
+    SCENE_FEATURES(ADD_FEATURE)
 #undef ADD_FEATURE
     return variant;
 }

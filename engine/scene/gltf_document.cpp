@@ -10,6 +10,7 @@
 #include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "engine/scene/gltf_json_checks.h"
+#include "engine/scene/gltf_materials.h"
 
 namespace scene::gltf
 {
@@ -90,6 +91,8 @@ std::vector<ImageSource> listImages(const Object& document)
         ImageSource source;
         if (const auto* uri = image.string("uri")) source.uri = *uri;
         if (const auto view = image.index("bufferView", "bufferViews")) source.bufferView = static_cast<int>(*view);
+        if ((source.bufferView >= 0) == image.has("uri"))
+            throw Error("{} needs either \"uri\" or \"bufferView\".", image.path());
         const auto* name = image.string("name");
         if (name && !name->empty())
             source.name = shown(*name);
@@ -135,7 +138,7 @@ void simplify(Json& value)
 
 tinygltf::Model parseModel(Json json)
 {
-    for (const char* key : {"buffers", "images", "animations"}) json.erase(key);
+    for (const char* key : {"buffers", "images", "textures", "samplers", "materials", "animations"}) json.erase(key);
     simplify(json);
     const std::string text = json.dump();
     tinygltf::TinyGLTF parser;
@@ -165,6 +168,7 @@ Document openDocument(const std::filesystem::path& file, const std::filesystem::
     const Object root(json);
     Document document{.folders = {file.parent_path(), assetRoot}, .images = listImages(root)};
     readBuffers(root, container.binary, document);
+    document.materials = readMaterials(root, warnings);
     warnOfIgnored(root, warnings);
     document.model = parseModel(std::move(json));
     return document;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/scene/gltf_uri.h"
+#include "engine/scene/scene.h"
 #include "engine/scene/tinygltf.h"
 #include "engine/scene/warnings.h"
 
@@ -23,16 +24,17 @@ struct ImageSource {
 
 struct Document {
     Folders folders;
-    tinygltf::Model model; // buffers and images of the model are empty: the two vectors below replace them
+    tinygltf::Model model; // structure; what the vectors below hold is empty in it
     std::vector<std::vector<std::byte>> buffers;
     std::vector<ImageSource> images;
+    std::vector<Material> materials;          // as readMaterials() gives them
     std::vector<std::filesystem::path> files; // that the buffers came from
 
     std::span<const std::byte> view(int bufferView) const; // all bytes of a buffer view
 };
 
-// Reads .gltf or .glb (told apart by the first bytes), checks it (gltf_json_checks.h) and reads all buffers. Throws
-// Error.
+// Reads .gltf or .glb (told apart by the first bytes), checks it (gltf_json_checks.h) and reads materials and all
+// buffers. Throws Error.
 Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, Warnings& warnings);
 
 } // namespace scene::gltf

@@ -68,10 +68,12 @@ const std::string* Object::string(const std::string& key) const
     return &value->get_ref<const std::string&>();
 }
 
-void Object::boolean(const std::string& key) const
+std::optional<bool> Object::boolean(const std::string& key) const
 {
     const Json* value = find(key);
-    if (value && !value->is_boolean()) throw Error("{} is {}, not true or false.", path(key), shown(*value));
+    if (!value) return std::nullopt;
+    if (!value->is_boolean()) throw Error("{} is {}, not true or false.", path(key), shown(*value));
+    return value->get<bool>();
 }
 
 void Object::numbers(const std::string& key, size_t count) const

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
@@ -29,8 +30,18 @@ class Object
     std::optional<uint64_t> integer(const std::string& key, uint64_t minimum, uint64_t maximum) const;
     std::optional<double> number(const std::string& key) const;
     const std::string* string(const std::string& key) const;
-    void boolean(const std::string& key) const;
+    std::optional<bool> boolean(const std::string& key) const;
     void numbers(const std::string& key, size_t count) const; // an array of so many numbers; 0: of any length
+    template <int COUNT>
+    std::optional<glm::vec<COUNT, double>> vector(const std::string& key) const // an array of exactly so many
+    {
+        numbers(key, COUNT);
+        const Json* values = find(key);
+        if (!values) return std::nullopt;
+        glm::vec<COUNT, double> result;
+        for (int i = 0; i < COUNT; ++i) result[i] = (*values)[size_t(i)].template get<double>();
+        return result;
+    }
     // An index into an array of `count` entries, called `plural` in messages.
     std::optional<uint32_t> index(const std::string& key, size_t count, const char* plural) const;
     // ... into a top-level array of that name.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/scene/gltf_materials.h"
 #include "engine/scene/gltf_scene_checks.h"
 
 namespace scene::gltf
@@ -21,12 +22,9 @@ constexpr uint64_t MAX_SPARSE_ELEMENTS = uint64_t{1} << 26; // of all accessors 
 
 constexpr uint64_t UNSIGNED_BYTE = 5121, UNSIGNED_SHORT = 5123, UNSIGNED_INT = 5125, FLOAT = 5126;
 
-constexpr std::array<const char*, 10> SUPPORTED_EXTENSIONS = {
-    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_materials_volume",   "KHR_mesh_quantization",
-    "KHR_texture_transform",
-};
+// Beside those of materials.
+constexpr std::array<std::string_view, 4> SUPPORTED_EXTENSIONS = {"EXT_mesh_gpu_instancing", "KHR_lights_punctual",
+                                                                  "KHR_mesh_quantization", "KHR_texture_transform"};
 
 void checkAsset(const Object& document)
 {
@@ -268,7 +266,7 @@ void checkAnimations(const Object& document)
 
 bool isSupportedExtension(const std::string& name)
 {
-    return std::find(SUPPORTED_EXTENSIONS.begin(), SUPPORTED_EXTENSIONS.end(), name) != SUPPORTED_EXTENSIONS.end();
+    return isMaterialExtension(name) || std::ranges::find(SUPPORTED_EXTENSIONS, name) != SUPPORTED_EXTENSIONS.end();
 }
 
 uint32_t componentSize(uint64_t componentType)
@@ -310,7 +308,6 @@ void checkJson(const Json& json)
     checkBuffers(document);
     checkBufferViews(document);
     checkAccessors(document);
-    checkMaterials(document);
     checkMeshes(document);
     checkCamerasAndLights(document);
     checkSkins(document);

@@ -6,7 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/scene/gltf_document.h"
 #include "engine/scene/gltf_geometry.h"
-#include "engine/scene/gltf_materials.h"
+#include "engine/scene/gltf_images.h"
 #include "engine/scene/gltf_nodes.h"
 
 namespace scene
@@ -91,11 +91,11 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     };
     Warnings warnings;
     report("Reading")(0);
-    const gltf::Document document = gltf::openDocument(file, options.assetRoot, warnings);
+    gltf::Document document = gltf::openDocument(file, options.assetRoot, warnings);
     const gltf::NodeTree tree = gltf::resolveNodes(document, warnings);
     Scene scene;
     scene.name = file.stem().string();
-    scene.materials = gltf::readMaterials(document, warnings);
+    scene.materials = std::move(document.materials);
     gltf::readGeometry(document, tree, scene, warnings, report("Building geometry"));
     keepUsedMaterials(scene);
     scene.files = document.files;

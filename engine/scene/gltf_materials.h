@@ -1,17 +1,20 @@
 #pragma once
-// Materials, and the images they use.
+// Materials: their JSON is checked while it is read.
 
-#include <functional>
+#include <string>
 #include <vector>
 
-#include "engine/scene/gltf_document.h"
+#include "engine/scene/gltf_json.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/warnings.h"
 
 namespace scene::gltf
 {
 
-// All materials of the file, then glTF's default material. TextureUse::image counts images of the file.
-std::vector<Material> readMaterials(const Document& document, Warnings& warnings);
+// All materials of a document, then glTF's default material. TextureUse::image counts images of the file. Throws Error.
+std::vector<Material> readMaterials(const Object& document, Warnings& warnings);
+
+bool isMaterialExtension(const std::string& name); // one that readMaterials reads
 
 // Calls visit(use) for each texture use of a material that has an image.
 template <class AnyMaterial, class Visit>
@@ -23,10 +26,5 @@ void eachTexture(AnyMaterial& material, Visit&& visit)
         if (use->image != NONE) visit(*use);
     }
 }
-
-// Decodes the images that `materials` use, on two threads, and points the uses to them. Adds to `files` those that they
-// came from. Throws Error.
-std::vector<Image> readImages(const Document& document, std::vector<Material>& materials,
-                              std::vector<std::filesystem::path>& files, const std::function<void(double)>& progress);
 
 } // namespace scene::gltf

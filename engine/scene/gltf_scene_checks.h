@@ -6,7 +6,6 @@
 namespace scene::gltf
 {
 
-void checkMaterials(const Object& document); // with textures, samplers, images
 void checkCamerasAndLights(const Object& document);
 void checkNodes(const Object& document); // with scenes; linear in the number of nodes
 

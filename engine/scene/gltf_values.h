@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of extensions (tinygltf::Value, types checked by checkJson) and ranges of numbers.
+// Extensions of what tinygltf has read, and ranges of numbers.
 
 #include <optional>
 #include <string>
@@ -15,8 +15,6 @@ namespace scene::gltf
 constexpr double MAX_RADIANCE = 1e12;
 
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
-double numberOf(const tinygltf::Value& object, const char* key, double absent);
-glm::dvec3 vec3Of(const tinygltf::Value& object, const char* key, const glm::dvec3& absent);
 
 // The nearest value in the range, with a warning when that is another: "Clamped the roughness of a material ...".
 double clamped(double value, double minimum, double maximum, const std::string& what, Warnings& warnings);

@@ -49,7 +49,7 @@ class Builder
         std::vector<bool> used(scene_.materials.size());
         for (const Triangle& triangle : scene_.triangles) used[triangle.material] = true;
         for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(scene_.materials[i], used[i]);
-        tables_.features.manyMaterials = scene_.materials.size() > 1;
+        tables_.features.HAS_MANY_MATERIALS = scene_.materials.size() > 1;
         if (tables_.texels.empty()) tables_.texels.emplace_back(0);
         return std::move(tables_);
     }
@@ -149,42 +149,42 @@ class Builder
     void noteFeatures(const Material& material)
     {
         SceneFeatures& f = tables_.features;
-        f.unlit |= material.unlit;
-        f.alpha |= material.alpha != Alpha::Opaque;
+        f.HAS_UNLIT |= material.unlit;
+        f.HAS_ALPHA |= material.alpha != Alpha::Opaque;
         f.blend |= material.alpha == Alpha::Blend;
-        f.vertexColors |= !scene_.colors.empty();
-        noteTexture(material.baseColorTexture, f.baseColorTexture);
-        noteTexture(material.normalTexture, f.normalMap);
-        if (material.emission != glm::vec3(0)) noteTexture(material.emissiveTexture, f.emissiveTexture);
+        f.HAS_VERTEX_COLORS |= !scene_.colors.empty();
+        noteTexture(material.baseColorTexture, f.HAS_BASE_COLOR_TEXTURE);
+        noteTexture(material.normalTexture, f.HAS_NORMAL_MAP);
+        if (material.emission != glm::vec3(0)) noteTexture(material.emissiveTexture, f.HAS_EMISSIVE_TEXTURE);
         if (material.unlit) return;
 
         const bool transmits = material.transmission > 0;
         const bool specular = material.specular > 0 || material.metallic > 0;
-        f.transmission |= transmits;
-        f.solid |= transmits && !material.thin;
-        f.specular |= specular;
+        f.HAS_TRANSMISSION |= transmits;
+        f.HAS_SOLID |= transmits && !material.thin;
+        f.HAS_SPECULAR |= specular;
         if (!specular && !transmits) return;
-        noteTexture(material.metallicRoughnessTexture, f.metallicRoughnessTexture);
-        noteTexture(material.specularTexture, f.specularTexture);
-        noteTexture(material.specularColorTexture, f.specularTexture);
-        if (transmits) noteTexture(material.transmissionTexture, f.transmissionTexture);
+        noteTexture(material.metallicRoughnessTexture, f.HAS_METALLIC_ROUGHNESS_TEXTURE);
+        noteTexture(material.specularTexture, f.HAS_SPECULAR_TEXTURE);
+        noteTexture(material.specularColorTexture, f.HAS_SPECULAR_TEXTURE);
+        if (transmits) noteTexture(material.transmissionTexture, f.HAS_TRANSMISSION_TEXTURE);
         float low = material.roughness, high = material.roughness;
         if (material.metallicRoughnessTexture.image != NONE) {
             const auto [darkest, brightest] = greenRange(scene_.images[material.metallicRoughnessTexture.image]);
             low *= darkest;
             high *= brightest;
         }
-        f.dirac |= low < DIRAC_ROUGHNESS;
-        f.rough |= high >= DIRAC_ROUGHNESS;
+        f.HAS_DIRAC |= low < DIRAC_ROUGHNESS;
+        f.HAS_ROUGH |= high >= DIRAC_ROUGHNESS;
     }
 
     void noteTexture(const TextureUse& use, bool& feature)
     {
         if (use.image == NONE) return;
         feature = true;
-        tables_.features.deepTexture |= !scene_.images[use.image].deep.empty();
-        tables_.features.secondUv |= use.uvSet == 1;
-        tables_.features.textureTransform |= !isIdentity(use);
+        tables_.features.HAS_DEEP_TEXTURE |= !scene_.images[use.image].deep.empty();
+        tables_.features.HAS_SECOND_UV |= use.uvSet == 1;
+        tables_.features.HAS_TEXTURE_TRANSFORM |= !isIdentity(use);
     }
 
     const Scene& scene_;

@@ -67,36 +67,19 @@ glm::uvec2 encodeColor(const glm::vec4& color)
 
 SceneFeatures everything()
 {
-    return {.alpha = true,
-            .blend = true,
-            .specular = true,
-            .rough = true,
-            .dirac = true,
-            .transmission = true,
-            .solid = true,
-            .emissive = true,
-            .punctual = true,
-            .directional = true,
-            .environment = true,
-            .unlit = true,
-            .vertexColors = true,
-            .secondUv = true,
-            .textureTransform = true,
-            .baseColorTexture = true,
-            .metallicRoughnessTexture = true,
-            .normalMap = true,
-            .emissiveTexture = true,
-            .transmissionTexture = true,
-            .specularTexture = true,
-            .manyMaterials = true,
-            .deepTexture = true};
+    SceneFeatures features{.blend = true};
+#define ADD_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT) features.NAME = true;
+    SCENE_FEATURES(ADD_FEATURE)
+#undef ADD_FEATURE
+    return features;
 }
 
 uint32_t attributeRows(const SceneFeatures& features)
 {
-    if (features.secondUv || features.vertexColors) return shared::ATTRIBUTE_ROWS_FULL;
-    const bool textured = features.baseColorTexture || features.metallicRoughnessTexture || features.normalMap ||
-                          features.emissiveTexture || features.transmissionTexture || features.specularTexture;
+    if (features.HAS_SECOND_UV || features.HAS_VERTEX_COLORS) return shared::ATTRIBUTE_ROWS_FULL;
+    const bool textured = features.HAS_BASE_COLOR_TEXTURE || features.HAS_METALLIC_ROUGHNESS_TEXTURE ||
+                          features.HAS_NORMAL_MAP || features.HAS_EMISSIVE_TEXTURE ||
+                          features.HAS_TRANSMISSION_TEXTURE || features.HAS_SPECULAR_TEXTURE;
     return textured ? shared::ATTRIBUTE_ROWS_UV : shared::ATTRIBUTE_ROWS_BARE;
 }
 
@@ -178,10 +161,10 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     tables.lights = lights.counts;
     MaterialTables materials = makeMaterialTables(scene, tables.radianceScale);
     tables.features = materials.features;
-    tables.features.emissive = lights.counts.emissiveTriangles > 0;
-    tables.features.punctual = lights.counts.points + lights.counts.spots > 0;
-    tables.features.directional = lights.counts.directionals > 0;
-    tables.features.environment = lights.counts.environments > 0;
+    tables.features.HAS_EMISSIVE = lights.counts.emissiveTriangles > 0;
+    tables.features.HAS_PUNCTUAL = lights.counts.points + lights.counts.spots > 0;
+    tables.features.HAS_DIRECTIONAL = lights.counts.directionals > 0;
+    tables.features.HAS_ENVIRONMENT = lights.counts.environments > 0;
 
     if (featureSet == FeatureSet::Everything) tables.features = everything();
 
@@ -199,7 +182,8 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     uniform.materialOffset = append(materials.rows);
     uniform.lightOffset = append(lights.lights);
     uniform.punctualOffset = append(lights.punctual);
-    const bool black = tables.features.environment && lights.environment.empty(); // asked for, but the scene has none
+    const bool black =
+        tables.features.HAS_ENVIRONMENT && lights.environment.empty(); // asked for, but the scene has none
     uniform.environmentOffset = append(black ? std::vector<glm::uvec4>{glm::uvec4(0)} : lights.environment);
     uniform.environmentAliasOffset = append(lights.environmentAliases);
     uniform.lightCount = uint32_t(lights.lights.size());
@@ -211,7 +195,7 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     requireFits("materials and lights", tables.sceneData.size(), maxTableBytes);
 
     std::vector<uint8_t> needsAlphaTest;
-    if (tables.features.alpha) {
+    if (tables.features.HAS_ALPHA) {
         needsAlphaTest.resize(scene.triangles.size());
         for (size_t t = 0; t < needsAlphaTest.size(); ++t)
             needsAlphaTest[t] = scene.materials[scene.triangles[t].material].alpha != Alpha::Opaque;

@@ -13,35 +13,17 @@
 #include "engine/scene/bvh.h"
 #include "engine/scene/scene.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/variant.h"
 
 namespace scene
 {
 
-// What occurs in a scene; the rest is left out of the shaders. Fields mirror shaders/shared/variant.h, but for blend.
+// What occurs in a scene; the rest is left out of the shaders.
 struct SceneFeatures {
-    bool alpha = false;
+#define DECLARE_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT) TYPE NAME = false;
+    SCENE_FEATURES(DECLARE_FEATURE)
+#undef DECLARE_FEATURE
     bool blend = false; // surfaces that exist by chance: equal rays may meet others in another frame
-    bool specular = false;
-    bool rough = false;
-    bool dirac = false;
-    bool transmission = false;
-    bool solid = false;
-    bool emissive = false;
-    bool punctual = false;
-    bool directional = false;
-    bool environment = false;
-    bool unlit = false;
-    bool vertexColors = false;
-    bool secondUv = false;
-    bool textureTransform = false;
-    bool baseColorTexture = false;
-    bool metallicRoughnessTexture = false;
-    bool normalMap = false;
-    bool emissiveTexture = false;
-    bool transmissionTexture = false;
-    bool specularTexture = false;
-    bool manyMaterials = false;
-    bool deepTexture = false;
 };
 
 // What the tables and shaders provide for: what the scene needs, or everything. The picture is the same.

@@ -5,10 +5,8 @@
 
 #include "shared/types.h"
 
-#define VARIANT_CONSTANTS(X)                                                                                           \
-    X(0, uint, MAX_BOUNCES, 5u, "scattering events on a path")                                                         \
-    X(1, bool, BOX_FILTER, false, "jittered camera rays")                                                              \
-    X(2, bool, ORTHOGRAPHIC, false, "parallel camera rays")                                                            \
+// What occurs in a scene: the fields of scene::SceneFeatures.
+#define SCENE_FEATURES(X)                                                                                              \
     X(3, bool, HAS_ALPHA, true, "alpha tests during traversal")                                                        \
     X(4, bool, HAS_SPECULAR, true, "specular reflection lobes")                                                        \
     X(5, bool, HAS_ROUGH, true, "GGX: specular lobes of finite width")                                                 \
@@ -30,12 +28,18 @@
     X(21, bool, HAS_TRANSMISSION_TEXTURE, true, "transmission textures")                                               \
     X(22, bool, HAS_SPECULAR_TEXTURE, true, "specular weight and color textures")                                      \
     X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")                                                    \
+    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")
+
+#define VARIANT_CONSTANTS(X)                                                                                           \
+    X(0, uint, MAX_BOUNCES, 5u, "scattering events on a path")                                                         \
+    X(1, bool, BOX_FILTER, false, "jittered camera rays")                                                              \
+    X(2, bool, ORTHOGRAPHIC, false, "parallel camera rays")                                                            \
+    SCENE_FEATURES(X)                                                                                                  \
     X(24, uint, RESERVOIR_COUNT, 1u, "reservoirs of a pixel")                                                          \
     X(25, uint, SHIFT_MAP, 0u, "shift map: 0 random replay, 1 reconnection, 2 hybrid")                                 \
     X(26, bool, SAME_VIEW, false, "temporal reuse without shifts, for frames of a resting camera")                     \
     X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
     X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
-    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")                                                \
     X(30, uint, COLOR_READING, 0u,                                                                                     \
       "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last")        \
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")
