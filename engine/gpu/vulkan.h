@@ -235,7 +235,7 @@ struct DeviceState {
     std::vector<VkCommandBuffer> freeCommandBuffers;
     std::vector<VkQueryPool> freeQueryPages;
     std::map<Submission, std::vector<Timing>> timings; // of finished ones, until they are taken
-    bool stalled = false; // for good: nothing can be waited for or destroyed
+    bool stalled = false;                              // for good: nothing can be waited for or destroyed
     std::unique_ptr<EncoderState> pendingWrites;
     StagingRing ring;
     std::unique_ptr<BufferState> staging;
