@@ -15,9 +15,9 @@ struct Reconnection {
 
 struct PathSample {
     PathSeed seed;
-    uint leaf;   // which path of the tree: path/leaf.glsl
-    uint joint;  // r of the reconnection vertex x_r; 0: the whole path is replayed
-    Reconnection reconnection; // when joint > 0
+    uint pathId;            // which path of the tree: path/path_id.glsl
+    uint reconnectionIndex; // r of the reconnection vertex x_r; 0: the whole path is replayed
+    Reconnection reconnection; // when reconnectionIndex > 0
 };
 
 #endif
