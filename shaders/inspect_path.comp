@@ -28,12 +28,8 @@ Surface last;    // x of the last one that scatters
 void addPoint(vec3 position, uint kind)
 {
     if (count == POINTS) return;
-    vec3 d = position - frame.camera.position.xyz;
-    vec3 right = frame.camera.right.xyz;
-    vec3 up = frame.camera.up.xyz;
-    float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.camera.forward.xyz);
-    pathPoints[gl_GlobalInvocationID.x * POINTS + count++] =
-        PathPoint(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up), depth, kind);
+    vec3 seen = project(frame.camera, position);
+    pathPoints[gl_GlobalInvocationID.x * POINTS + count++] = PathPoint(seen.x, seen.y, seen.z, kind);
 }
 
 void addEnd(bool infinite, vec3 position, vec3 direction)
@@ -66,7 +62,7 @@ void emit(uint pathId, vec3 f, Ending e)
 {
     if (pathId != path.pathId) return;
     if (techniqueOf(pathId) == BY_LIGHT) addSampledLight();
-    else addHit(lightVertex.hit, e.direction);
+    else addHit(Hit(lightVertex.kept.triangle, lightVertex.kept.barycentric, 0.0), e.direction);
 }
 
 // From the last point to x_r and what it scatters to. True when the walk goes on from there, at s.

@@ -10,7 +10,6 @@ TABLE(SET_PASS, 2, ReservoirPaths);
 TABLE(SET_PASS, 3, Shifted);
 TABLE_OUT(SET_PASS, 4, ShiftCounts); // two rows a pixel, by slot: a word for each outcome
 
-#include "domain.glsl"
 #include "shift.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)

@@ -69,7 +69,7 @@ void main()
         }
     }
     float u = decisionNumber(pixel, STREAM_SPATIAL + frame.neighborCount);
-    vec3 chosen = vec3(0.0);
+    vec3 color = vec3(0.0); // of the chosen samples
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (COLOR_READING == COLOR_WEIGHTED)
             weighted += (r[c].weightSum * merge[c].kept + r[c].carry) * colorOf(c, r[c].f);
@@ -80,13 +80,12 @@ void main()
             lender[c] = pixel;
         }
         r[c].chosen.reconnection = loadReservoirsPath(lender[c], c);
-        chosen += resolved(c, r[c]);
+        color += resolved(c, r[c]);
     }
     countTrees(r);
     storeHistory(pixel, r);
     historyConfidences[pixel] = uint(confidence + neighborConfidence);
-    vec3 light = chosen;
     // Without neighbors nothing was merged here: the merge before stands.
-    if (COLOR_READING == COLOR_WEIGHTED) light = neighborConfidence > 0.0 ? weighted : colorIn(MergedColor, pixel);
-    STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + light, STAGE)));
+    if (COLOR_READING == COLOR_WEIGHTED) color = neighborConfidence > 0.0 ? weighted : colorIn(MergedColor, pixel);
+    STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + color, STAGE)));
 }

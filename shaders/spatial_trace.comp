@@ -9,7 +9,6 @@ TABLE(SET_PASS, 1, Reservoirs);
 TABLE(SET_PASS, 2, ReservoirPaths);
 TABLE_OUT(SET_PASS, 3, Shifted);
 
-#include "domain.glsl"
 #include "shift.glsl"
 #include "restir/neighbors.glsl"
 #include "restir/reservoir_store.glsl"

@@ -12,7 +12,6 @@ TABLE_INOUT(SET_PASS, 5, ReservoirPaths);
 TABLE_OUT(SET_PASS, 6, MergedColor);
 layout(set = SET_PASS, binding = 7, std430) buffer Confidences { uint confidences[]; };
 
-#include "domain.glsl"
 #include "shift.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"

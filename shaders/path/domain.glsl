@@ -1,5 +1,6 @@
 // Domains: the integral of one pixel in one frame. With shift.glsl and candidates.glsl all that resampling knows of light
-// transport; tests put a closed-form integrand in place of the three. Of a Domain stages read `seen` alone.
+// transport; tests put a closed-form integrand in place of the three. What stages use of them: Domain.seen, makeDomain, alike,
+// reproject; shiftInto, countShifts; offerCandidates, countCandidates.
 #ifndef SHADERS_PATH_DOMAIN_GLSL
 #define SHADERS_PATH_DOMAIN_GLSL
 
@@ -58,14 +59,10 @@ bool reproject(Domain here, uint pixel, out uint previousPixel)
 {
     previousPixel = pixel;
     if (SAME_VIEW) return true;
-    vec3 d = here.position - frame.previousCamera.position.xyz;
-    float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.previousCamera.forward.xyz);
-    if (depth <= 0.0) return false;
-    vec3 right = frame.previousCamera.right.xyz;
-    vec3 up = frame.previousCamera.up.xyz;
-    vec2 p = vec2(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up)) / depth;
+    vec3 p = project(frame.previousCamera, here.position);
+    if (p.z <= 0.0) return false;
     vec2 size = vec2(frame.width, frame.runHeight);
-    vec2 at = floor((p * vec2(0.5, -0.5) + 0.5) * size);
+    vec2 at = floor((p.xy / p.z * vec2(0.5, -0.5) + 0.5) * size);
     if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) return false;
     uint runTop = pixel / frame.width / frame.runHeight * frame.runHeight;
     previousPixel = (runTop + uint(at.y)) * frame.width + uint(at.x);

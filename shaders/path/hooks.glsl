@@ -7,7 +7,7 @@
 #define SHADERS_PATH_HOOKS_GLSL
 
 #include "path/path_id.glsl"
-#include "restir/path_sample.glsl"
+#include "restir/reservoir.glsl"
 #include "scene/bsdf.glsl"
 #include "scene/camera.glsl"
 

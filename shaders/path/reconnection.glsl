@@ -2,7 +2,7 @@
 //
 // The reconnection vertex x_r of a path is the first x_r, r >= 2, such that x_(r-1) and x_r scatter widely and are far enough
 // apart. A shift replays the prefix x_2 .. x_(r-1), joins x_(r-1) to x_r and keeps the rest (Lin et al. 2022, section 5.3).
-// That is invertible only if the shifted path's first such vertex is x_r too, so both directions ask the same joins().
+// That is invertible only if the shifted path's first such vertex is x_r too, so both directions ask the same functions.
 //
 // Measure: primary sample space before x_r, area at x_r (solid angle for the environment), solid angle at x_r for x_(r+1)
 // when scattering found it, primary sample space after. Shifts preserve it, so |T'| = 1, and f(Y) of a reconnecting path
@@ -30,22 +30,15 @@ struct Segment {
 };
 
 struct ReconnectionVertex {
-    uint index;        // r; 0: none yet
+    uint index;        // r; 0: there is none
     float arrival;     // p_(r-1) G
     float departure;   // p_r, of the walk's own direction
     Reconnection kept; // its suffix: throughput of the scattering events after x_r
 };
 const ReconnectionVertex NO_VERTEX =
-    ReconnectionVertex(0u, 0.0, 0.0, Reconnection(NO_HIT, vec2(0.0), 0.0, vec3(0.0), vec3(1.0)));
-ReconnectionVertex reconnectionVertex; // of the walk
-
-// The last scattered ray, if the light it found can be a reconnection vertex itself.
-struct LightVertex {
-    bool joins;
-    Hit hit;
-    float arrival; // p_k G
-};
-LightVertex lightVertex;
+    ReconnectionVertex(0u, 1.0, 1.0, Reconnection(NO_HIT, vec2(0.0), 0.0, vec3(0.0), vec3(1.0)));
+ReconnectionVertex reconnectionVertex; // of the walk so far
+ReconnectionVertex lightVertex;        // the light that the last scattered ray found, joinable itself or not
 
 // Depends on the material alone, so that it is the same from all directions.
 bool scattersWidely(Surface s)
@@ -54,7 +47,7 @@ bool scattersWidely(Surface s)
     return !polished || s.alphaG >= JOIN_ALPHA;
 }
 
-// Can x_(r-1) on `before` be joined to light at `position`? `arrival`: p_(r-1) G.
+// Can x_(r-1) on `before` be joined to light at `position`? To a surface there, if it scatters widely, too. `arrival`: p_(r-1) G.
 bool joinsLight(uint r, Surface before, vec3 position, float distance, float arrival)
 {
     if (SHIFT_MAP == SHIFT_REPLAY || (SHIFT_MAP == SHIFT_RECONNECTION && r != 2u)) return false;
@@ -64,16 +57,12 @@ bool joinsLight(uint r, Surface before, vec3 position, float distance, float arr
     return distance > JOIN_DISTANCE * maxComponent(max(abs(before.position), abs(position)));
 }
 
-// Can x_(r-1) on `before` be joined to x_r on `at`, which scatters on?
-bool joins(uint r, Surface before, Surface at, float distance, float arrival)
-{
-    return joinsLight(r, before, at.position, distance, arrival) && scattersWidely(at);
-}
-
 void noteArrival(Vertex before, Segment to, Surface at)
 {
-    if (reconnectionVertex.index != 0u || !joins(before.k + 1u, before.s, at, to.distance, to.arrival)) return;
-    reconnectionVertex.index = before.k + 1u;
+    uint r = before.k + 1u;
+    if (reconnectionVertex.index != 0u || !joinsLight(r, before.s, at.position, to.distance, to.arrival)) return;
+    if (!scattersWidely(at)) return;
+    reconnectionVertex.index = r;
     reconnectionVertex.arrival = to.arrival;
     reconnectionVertex.kept.triangle = to.hit.triangle;
     reconnectionVertex.kept.barycentric = to.hit.barycentric;
@@ -93,32 +82,25 @@ void noteDeparture(Vertex x, Scatter scatter)
 void noteLight(Vertex x, Segment to, vec3 position)
 {
     bool joins = reconnectionVertex.index == 0u && joinsLight(x.k + 1u, x.s, position, to.distance, to.arrival);
-    lightVertex = LightVertex(joins, to.hit, to.arrival);
+    lightVertex = NO_VERTEX;
+    lightVertex.index = joins ? x.k + 1u : 0u;
+    lightVertex.arrival = joins ? to.arrival : 1.0;
+    lightVertex.kept = Reconnection(to.hit.triangle, to.hit.barycentric, 0.0, to.scatter.direction, vec3(1.0));
 }
 
 // The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).
 PathSample sampleOf(PathSeed seed, uint pathId, Ending e, out float density)
 {
-    ReconnectionVertex x = reconnectionVertex;
-    PathSample y = PathSample(seed, pathId, x.index, x.kept);
     density = 1.0;
-    if (SHIFT_MAP == SHIFT_REPLAY) return y;
+    if (SHIFT_MAP == SHIFT_REPLAY) return PathSample(seed, pathId, 0u, NO_VERTEX.kept);
     bool byLight = techniqueOf(pathId) == BY_LIGHT;
-    bool last = x.index == scatteringsOf(pathId); // k >= 1, so that there is an x_r
-    if (x.index != 0u) {
-        density = last && byLight ? x.arrival : x.arrival * x.departure;
-        y.reconnection.suffix *= e.weighted;
-    } else if (!byLight && lightVertex.joins) {
-        density = lightVertex.arrival;
-        y.reconnectionIndex = scatteringsOf(pathId) + 1u;
-        y.reconnection = Reconnection(lightVertex.hit.triangle, lightVertex.hit.barycentric, 0.0, e.direction, vec3(0.0));
-    }
-    if (last) {
-        y.reconnection.lightPdf = e.lightPdf;
-        y.reconnection.direction = e.direction;
-        y.reconnection.suffix = e.radiance;
-    }
-    return y;
+    ReconnectionVertex x = reconnectionVertex;
+    if (x.index == 0u && !byLight) x = lightVertex;
+    bool last = x.index == scatteringsOf(pathId); // what follows x_r is light
+    density = last && byLight ? x.arrival : x.arrival * x.departure;
+    x.kept.suffix *= e.weighted;
+    if (last) x.kept = Reconnection(x.kept.triangle, x.kept.barycentric, e.lightPdf, e.direction, e.radiance);
+    return PathSample(seed, pathId, x.index, x.kept);
 }
 
 #endif

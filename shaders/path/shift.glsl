@@ -1,13 +1,11 @@
-// The shift maps: random replay, reconnection, and hybrid, which replays x_2 .. x_(r-1), reconnects to x_r and keeps the rest
-// (Lin et al. 2022, section 5.3). All reservoirs whose samples have one seed are shifted in one walk: they share the prefix
-// and the visibility of the reconnection vertex.
+// The shift maps: random replay, reconnection, and hybrid, which does one after the other (reconnection.glsl). All reservoirs
+// whose samples have one seed are shifted in one walk: they share the prefix and whether the reconnection vertex is seen.
 #ifndef SHADERS_PATH_SHIFT_GLSL
 #define SHADERS_PATH_SHIFT_GLSL
 
 #define DEFERS_SHADOW_RAYS
 #include "path/domain.glsl"
 #include "path/walk.glsl"
-#include "restir/reservoir.glsl"
 
 PathSample moving[MAX_RESERVOIRS];
 vec3 arrived[MAX_RESERVOIRS];
@@ -81,7 +79,7 @@ bool goesOn(uint k)
 
 void emit(uint pathId, vec3 f, Ending e)
 {
-    bool joinedEarlier = techniqueOf(pathId) == BY_SCATTER && lightVertex.joins;
+    bool joinedEarlier = techniqueOf(pathId) == BY_SCATTER && lightVertex.index != 0u;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!isOpen(c) || moving[c].reconnectionIndex != 0u || moving[c].pathId != pathId) continue;
         settle(c, joinedEarlier ? SHIFT_JOINED_EARLIER : SHIFT_DONE, joinedEarlier ? vec3(0.0) : f);

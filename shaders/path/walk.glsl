@@ -37,7 +37,8 @@ void emitUnlessBlocked(uint pathId, vec3 f, Ending e, ShadowRay shadow)
 }
 #endif
 
-// Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight times f L / p_N, without 0/0.
+// Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight (Veach and Guibas 1995) times f L / p_N,
+// without 0/0.
 void emitByLight(Vertex x, PathSeed seed)
 {
     uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);

@@ -10,7 +10,24 @@
 #define SHADERS_RESTIR_RESERVOIR_GLSL
 
 #include "lib/lanes.glsl"
-#include "restir/path_sample.glsl"
+#include "lib/random.glsl"
+
+// From vertex x_r on a reconnected path is kept as it is: what shifts need to know of that part.
+struct Reconnection {
+    uint triangle;    // of x_r; NO_HIT: x_r is the environment in `direction`
+    vec2 barycentric; // of x_r
+    float lightPdf;   // of the path's light by the other technique, solid angle at x_r; 0: no weight depends on x_(r-1)
+    vec3 direction;   // x_r -> x_(r+1), unit
+    vec3 suffix;      // radiance that arrives at x_r from there, over the densities that drew it
+};
+
+// One path of a path tree, by the numbers that drew it. Opaque to resampling, which only moves it about.
+struct PathSample {
+    PathSeed seed;
+    uint pathId;            // which path of the tree: path/path_id.glsl
+    uint reconnectionIndex; // r of the reconnection vertex x_r; 0: the whole path is replayed
+    Reconnection reconnection; // when reconnectionIndex > 0
+};
 
 struct Reservoir {
     PathSample chosen;  // Y
@@ -68,9 +85,11 @@ bool mergeHistory(inout Reservoir here, Reservoir history, float rho, float hist
     return !(u * here.weightSum < weight);
 }
 
-// Defensive pairwise MIS: the merge of a pixel's own reservoir (confidence c_i) with those of its neighbors (c_j; together
-// M_n, and with the own M), one after the other. In complement form: S' = S_i + sum over j of (w_j - eps_j S_i), where eps_j
-// is the part of the own sample's MIS weight that neighbor j takes. Equal domains change nothing, to the last bit.
+// Defensive pairwise MIS (Lin et al. 2022), in ratios: the merge of a pixel's own reservoir (confidence c_i) with those of its
+// neighbors (c_j; together M_n, and M with the own), one after the other. a and b are the ratios rho of the neighbor's sample
+// (here over there) and of the own one (there over here):
+//     w_j = S_j (c_j / M) M_n a / (M_n + c_i a),    w_i = S_i (1 - sum of eps_j),    eps_j = (c_j / M) M_n b / (M_n b + c_i)
+// In complement form S' = S_i + sum of (w_j - eps_j S_i): equal domains change nothing, to the last bit.
 struct PairwiseMerge {
     float confidence;         // c_i
     float neighborConfidence; // M_n
@@ -84,8 +103,7 @@ PairwiseMerge beginMerge(Reservoir own, float confidence, float neighborConfiden
     return PairwiseMerge(confidence, neighborConfidence, EMPTY, own.carry, 1.0);
 }
 
-// a and b are the ratios rho of the neighbor's sample (here over there) and of the own one (there over here). True when the
-// neighbor's sample is chosen among the neighbors': the caller replaces m.neighbors' sample and f. `weight` is w_j.
+// True when the neighbor's sample is chosen among the neighbors': the caller replaces sample and f of m.neighbors. `weight`: w_j.
 bool mergeNeighbor(inout PairwiseMerge m, Reservoir own, Reservoir neighbor, float a, float b, float confidence, float u,
                    out precise float weight)
 {

@@ -75,10 +75,7 @@ TraversalRay prepare(Ray ray)
     return r;
 }
 
-float byteAt(uint word, int index)
-{
-    return float(int((word >> (8 * index)) & 255u));
-}
+float byteAt(uint word, int index) { return float(int((word >> (8 * index)) & 255u)); }
 
 // `bits` where the ray within [tMin, tMax] meets slot `i` of the four whose planes are packed in the words; else 0.
 uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin, float tMax, uint bits)
@@ -98,10 +95,7 @@ uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin,
     return enter <= leave ? bits : 0u;
 }
 
-uint slotBits(uint slot)
-{
-    return (7u << (3u * slot)) | (1u << (24u + slot));
-}
+uint slotBits(uint slot) { return (7u << (3u * slot)) | (1u << (24u + slot)); }
 
 // The children that the ray meets, as the node's masks with the others' bits cleared.
 uint meetChildren(TraversalRay r, float tMax, uvec4 grid, uint masks, uvec4 a, uvec4 b, uvec4 c)
@@ -330,15 +324,9 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
 }
 
 // The nearest triangle before tMax; of several at the same t the one of the lowest index.
-Hit closestHit(Ray ray, uint alphaSeed)
-{
-    return traverse(ray, alphaSeed, false);
-}
+Hit closestHit(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, false); }
 
 // Is there any triangle before tMax?
-bool occluded(Ray ray, uint alphaSeed)
-{
-    return traverse(ray, alphaSeed, true).triangle != NO_HIT;
-}
+bool occluded(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, true).triangle != NO_HIT; }
 
 #endif

@@ -21,7 +21,7 @@ uvec4 replacedBlock(PathSeed seed, uint block, uvec2 key)
 
 uint endingOf(PathSample y)
 {
-    if ((y.pathId & 1u) == BY_SCATTER) return lightVertex.hit.triangle == NO_HIT ? SKY_MET : LAMP_MET;
+    if (techniqueOf(y.pathId) == BY_SCATTER) return lightVertex.kept.triangle == NO_HIT ? SKY_MET : LAMP_MET;
     Surface anywhere; // the kind of light does not depend on it
     anywhere.position = vec3(0.0);
     anywhere.geometricNormal = vec3(0.0);

@@ -1,5 +1,5 @@
 // In place of path/shift.glsl: the toy's shifts.
-#include "restir/reservoir.glsl"
+#include "domain.glsl"
 
 vec3 moved(ToyDomain d, PathSample y)
 {

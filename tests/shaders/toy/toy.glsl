@@ -3,7 +3,7 @@
 #define TESTS_SHADERS_TOY_TOY_GLSL
 
 #include "lib/frame.glsl"
-#include "restir/path_sample.glsl"
+#include "restir/reservoir.glsl"
 #include "toy.h"
 
 layout(set = SET_PASS, binding = 0, std430) readonly buffer Domains {
