@@ -3,7 +3,6 @@
 // Stage 1. Walks one new path tree a pixel and offers every path to all of the pixel's reservoirs (Algorithm 1).
 #define STAGE STAGE_CANONICAL
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE_OUT(SET_PASS, 1, Reservoirs);
 TABLE_OUT(SET_PASS, 2, ReservoirPaths);
@@ -24,7 +23,7 @@ void offer(PathSample y, vec3 f, float density)
     f = finiteOrCounted(f, STAGE);
     vec3 stored = finiteOrCounted(f * density, STAGE);
     if (COLOR_READING == COLOR_WEIGHTED) allPaths += f;
-    float u = decisionFloat(decisionRandom(y.seed.pixel, STREAM_CANONICAL + y.leaf).x); // one for all reservoirs
+    float u = decisionNumber(y.seed.pixel, STREAM_CANONICAL + y.pathId); // one for all reservoirs
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!consider(canonical[c], targetOf(c, f), u)) continue;
         canonical[c].chosen = y;
@@ -34,16 +33,16 @@ void offer(PathSample y, vec3 f, float density)
 
 void main()
 {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= frame.width || pixel.y >= frame.height) return;
-    uint index = pixel.y * frame.width + pixel.x;
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (at.x >= frame.width || at.y >= frame.height) return;
+    uint pixel = at.y * frame.width + at.x;
 
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) canonical[c] = EMPTY;
     vec3 emission;
-    bool seen = offerCandidates(PathSeed(frame.frame, index), pixel, emission);
-    STORE(Color, index, rowOf(finiteOrCounted(emission, STAGE)));
-    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, index, rowOf(allPaths));
-    storeReservoirs(index, canonical);
-    confidences[index] = seen ? 1u : 0u; // also when no path carried light: that is news too
+    bool seen = offerCandidates(PathSeed(frame.frame, pixel), at, emission);
+    STORE(Color, pixel, rowOf(finiteOrCounted(emission, STAGE)));
+    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, pixel, rowOf(allPaths));
+    storeReservoirs(pixel, canonical);
+    confidences[pixel] = seen ? 1u : 0u; // also when no path carried light: that is news too
     countCandidates();
 }

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // What the frame's reservoirs hold, decoded for the window; no stage of a frame.
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 #include "shared/inspection.h"
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 0, Reservoirs);
@@ -13,7 +12,7 @@ TABLE(SET_PASS, 4, HistoryPaths);
 TABLE(SET_PASS, 5, HistoryConfidences);
 TABLE_OUT(SET_PASS, 6, Inspections);
 
-#include "path/leaf.glsl"
+#include "path/path_id.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
@@ -49,8 +48,8 @@ void main()
         float weight = target > 0.0 ? weightSum / target : 0.0;
         uint row = 2u * (c * pixelCount() + pixel); // of struct Inspection
         STORE(Inspections, row,
-              uvec4(r.chosen.seed.frame, r.chosen.seed.pixel, r.chosen.leaf | r.chosen.joint << 16u,
-                    scatteringsOf(r.chosen.leaf) | shifts.x << 16u | shifts.y << 24u));
+              uvec4(r.chosen.seed.frame, r.chosen.seed.pixel, r.chosen.pathId | r.chosen.reconnectionIndex << 16u,
+                    scatteringsOf(r.chosen.pathId) | shifts.x << 16u | shifts.y << 24u));
         STORE(Inspections, row + 1u,
               uvec4(floatBitsToUint(vec3(weightSum, target, weight)), FETCH_WORD(HistoryConfidences, pixel)));
     }

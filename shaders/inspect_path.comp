@@ -4,7 +4,6 @@
 // frame. What precedes the reconnection vertex x_r is replayed in the pixel's own domain. What follows it is replayed
 // from x_r: it knows nothing of the pixel that drew it.
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 #include "shared/inspection.h"
 layout(local_size_x = 8) in;
 TABLE(SET_PASS, 1, History);
@@ -14,7 +13,7 @@ layout(set = SET_PASS, binding = 4, std430) writeonly buffer PathPoints { PathPo
 
 uint firstVertex = 1u;
 #define FIRST_VERTEX firstVertex
-#include "path/surfaces.glsl"
+#include "path/primary_hit.glsl"
 #include "path/walk.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(History, History, HistoryPaths)
@@ -29,12 +28,8 @@ Surface last;    // x of the last one that scatters
 void addPoint(vec3 position, uint kind)
 {
     if (count == POINTS) return;
-    vec3 d = position - frame.camera.position.xyz;
-    vec3 right = frame.camera.right.xyz;
-    vec3 up = frame.camera.up.xyz;
-    float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.camera.forward.xyz);
-    pathPoints[gl_GlobalInvocationID.x * POINTS + count++] =
-        PathPoint(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up), depth, kind);
+    vec3 seen = project(frame.camera, position);
+    pathPoints[gl_GlobalInvocationID.x * POINTS + count++] = PathPoint(seen.x, seen.y, seen.z, kind);
 }
 
 void addEnd(bool infinite, vec3 position, vec3 direction)
@@ -51,7 +46,7 @@ void addHit(Hit hit, vec3 direction)
 // As next-event estimation at the last point drew it.
 void addSampledLight()
 {
-    LightSample light = sampleLight(pathRandom(path.seed, scatteringsOf(path.leaf), PURPOSE_LIGHT), last);
+    LightSample light = sampleLight(pathRandom(path.seed, scatteringsOf(path.pathId), PURPOSE_LIGHT), last);
     addEnd(light.infinite, light.target, light.direction);
 }
 
@@ -59,36 +54,36 @@ bool visit(Vertex x)
 {
     last = x.s;
     addPoint(x.s.position, POINT_SURFACE);
-    return x.k + 1u != path.joint;
+    return x.k + 1u != path.reconnectionIndex;
 }
-bool wants(uint leaf) { return leaf == path.leaf; }
-bool goesOn(uint k) { return path.leaf > makeLeaf(k, BY_LIGHT); }
-void emit(uint leaf, vec3 f, Ending e)
+bool wants(uint pathId) { return pathId == path.pathId; }
+bool goesOn(uint k) { return path.pathId > makePathId(k, BY_LIGHT); }
+void emit(uint pathId, vec3 f, Ending e)
 {
-    if (leaf != path.leaf) return;
-    if ((leaf & 1u) == BY_LIGHT) addSampledLight();
-    else addHit(lightJoint.hit, e.direction);
+    if (pathId != path.pathId) return;
+    if (techniqueOf(pathId) == BY_LIGHT) addSampledLight();
+    else addHit(Hit(lightVertex.kept.triangle, lightVertex.kept.barycentric, 0.0), e.direction);
 }
 
 // From the last point to x_r and what it scatters to. True when the walk goes on from there, at s.
 bool join(out Surface s, out vec3 wo)
 {
     Reconnection r = path.reconnection;
-    uint k = path.joint;
-    if (r.triangle == NO_HIT || k > scatteringsOf(path.leaf)) { // x_r is the light
+    uint k = path.reconnectionIndex;
+    if (r.triangle == NO_HIT || k > scatteringsOf(path.pathId)) { // x_r is the light
         addHit(Hit(r.triangle, r.barycentric, 0.0), r.direction);
         return false;
     }
     vec3 position = hitPosition(r.triangle, r.barycentric);
     last = loadSurface(r.triangle, r.barycentric, normalize(last.position - position));
     addPoint(position, POINT_SURFACE);
-    if (path.leaf == makeLeaf(k, BY_LIGHT)) {
+    if (path.pathId == makePathId(k, BY_LIGHT)) {
         addSampledLight();
         return false;
     }
     Hit hit = nearestHit(Ray(departure(last, r.direction), r.direction, RAY_MAX), pathRandom(path.seed, k, PURPOSE_SCATTER).w);
-    if (path.leaf == makeLeaf(k, BY_SCATTER)) addHit(hit, r.direction);
-    if (path.leaf == makeLeaf(k, BY_SCATTER) || hit.triangle == NO_HIT) return false;
+    if (path.pathId == makePathId(k, BY_SCATTER)) addHit(hit, r.direction);
+    if (path.pathId == makePathId(k, BY_SCATTER) || hit.triangle == NO_HIT) return false;
     wo = -r.direction;
     s = loadSurface(hit.triangle, hit.barycentric, wo);
     return true;
@@ -100,21 +95,19 @@ void main()
     if (c >= RESERVOIR_COUNT || request.pixel >= frame.width * frame.height) return;
     for (uint i = 0u; i < POINTS; ++i) pathPoints[c * POINTS + i].kind = POINT_NONE;
 
-    uvec4 hit = seenBy(request.pixel, false);
-    if (hit.x == NO_HIT) return;
-    path = PathSample(PathSeed(frame.frame, request.pixel), makeLeaf(MAX_BOUNCES + 1u, BY_LIGHT), 0u, NO_SAMPLE.reconnection);
+    PrimaryHit hit = loadPrimaryHit(uvec2(request.pixel % frame.width, request.pixel / frame.width));
+    if (!hit.seen) return;
+    path = PathSample(PathSeed(frame.frame, request.pixel), makePathId(MAX_BOUNCES + 1u, BY_LIGHT), 0u, NO_SAMPLE.reconnection);
     if (request.plain == 0u) {
         Reservoir r = loadHistoryHead(request.pixel, c);
         if (!(r.weightSum > 0.0)) return;
         path = r.chosen;
         path.reconnection = loadHistoryPath(request.pixel, c);
     }
-    vec2 barycentric = uintBitsToFloat(hit.yz);
-    vec3 wo = towardsCamera(frame.camera, hitPosition(hit.x, barycentric));
-    Surface s = loadSurface(hit.x, barycentric, wo);
     for (uint part = 0u; part < 2u; ++part) { // a loop, so that the walk is compiled once
-        walk(s, wo, path.seed);
-        if (part == 1u || path.joint == 0u || count + 1u != path.joint || !join(s, wo)) return;
-        firstVertex = path.joint + 1u;
+        walk(hit.s, hit.wo, path.seed);
+        uint r = path.reconnectionIndex;
+        if (part == 1u || r == 0u || count + 1u != r || !join(hit.s, hit.wo)) return;
+        firstVertex = r + 1u;
     }
 }

@@ -4,14 +4,13 @@
 // window; no stage of a frame.
 #define STAGE STAGE_SPATIAL_TRACE
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 1, Reservoirs);
 TABLE(SET_PASS, 2, ReservoirPaths);
 TABLE(SET_PASS, 3, Shifted);
 TABLE_OUT(SET_PASS, 4, ShiftCounts); // two rows a pixel, by slot: a word for each outcome
 
-#include "integrand.glsl"
+#include "shift.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 LOAD_SHIFTED(Shifted)

@@ -1,12 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // For measurements: which pixel of the previous frame saw what each pixel of the first run sees now, as temporal.comp asks.
-#define STAGE STAGE_PRIMARY
 #include "lib/frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_PASS, binding = 1, std430) writeonly buffer PreviousPixels { uint previousPixels[]; };
 
-#include "integrand.glsl"
+#include "domain.glsl"
 
 void main()
 {

@@ -4,14 +4,12 @@
 // pixel and does the same. The slots of a pixel lie side by side, so that lanes in lockstep shift the same samples.
 #define STAGE STAGE_SPATIAL_TRACE
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 1, Reservoirs);
 TABLE(SET_PASS, 2, ReservoirPaths);
 TABLE_OUT(SET_PASS, 3, Shifted);
 
-#include "integrand.glsl"
-#include "restir/estimator.glsl"
+#include "shift.glsl"
 #include "restir/neighbors.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)

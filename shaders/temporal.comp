@@ -3,8 +3,6 @@
 // Stage 2. Merges each pixel's canonical reservoirs with those of the pixel that saw the same point in the previous frame.
 #define STAGE STAGE_TEMPORAL
 #include "lib/frame.glsl"
-#include "lib/loop.glsl"
-#include "lib/table.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 TABLE(SET_PASS, 1, History);
 TABLE(SET_PASS, 2, HistoryPaths);
@@ -14,12 +12,34 @@ TABLE_INOUT(SET_PASS, 5, ReservoirPaths);
 TABLE_OUT(SET_PASS, 6, MergedColor);
 layout(set = SET_PASS, binding = 7, std430) buffer Confidences { uint confidences[]; };
 
-#include "integrand.glsl"
+#include "shift.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(History, History, HistoryPaths)
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 STORE_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
+
+// f of the history's samples here, and of this pixel's samples there. In a loop, so that the walk is compiled once.
+void shiftBothWays(uint pixel, Domain here, uint previousPixel, Domain there, out vec3 fHere[MAX_RESERVOIRS],
+                   out vec3 fThere[MAX_RESERVOIRS])
+{
+    uint way = 0u;
+    LOOP_BEGIN(way < 2u)
+        bool backward = way != 0u;
+        vec3 f[MAX_RESERVOIRS];
+        Reservoir subjects[MAX_RESERVOIRS];
+        Domain to = there;
+        if (backward) loadReservoirs(pixel, subjects);
+        if (!backward) {
+            to = here;
+            loadHistory(previousPixel, subjects);
+        }
+        shiftInto(to, subjects, f);
+        if (backward) fThere = f;
+        else fHere = f;
+        ++way;
+    LOOP_END(way < 2u)
+}
 
 void main()
 {
@@ -34,41 +54,22 @@ void main()
     uint historyConfidence = min(FETCH_WORD(HistoryConfidences, previousPixel), frame.maxConfidence); // Eq. 12
     if (historyConfidence == 0u || !alike(here, there)) return;
 
-    vec3 fThere[MAX_RESERVOIRS]; // of this pixel's samples in the history's domain
-    vec3 fHere[MAX_RESERVOIRS];  // of the history's samples here
-    // SAME_VIEW: every pixel sees what it saw, all shifts are identities. Else a loop, so that the walk is compiled once; the
-    // reservoirs are read again after it, so that they need no registers meanwhile.
-    if (!SAME_VIEW) {
-        uint way = 0u;
-        LOOP_BEGIN(way < 2u)
-            bool backward = way != 0u;
-            vec3 f[MAX_RESERVOIRS];
-            Reservoir subjects[MAX_RESERVOIRS];
-            Domain to = there;
-            if (backward) loadReservoirs(pixel, subjects);
-            if (!backward) {
-                to = here;
-                loadHistory(previousPixel, subjects);
-            }
-            shiftInto(to, subjects, f);
-            if (backward) fThere = f;
-            else fHere = f;
-            ++way;
-        LOOP_END(way < 2u)
-    }
-    Reservoir r[MAX_RESERVOIRS];
+    vec3 fHere[MAX_RESERVOIRS];
+    vec3 fThere[MAX_RESERVOIRS];
+    if (!SAME_VIEW) shiftBothWays(pixel, here, previousPixel, there, fHere, fThere);
+
+    Reservoir r[MAX_RESERVOIRS]; // only now, so that they need no registers meanwhile
     Reservoir old[MAX_RESERVOIRS];
     loadReservoirs(pixel, r);
     loadHistory(previousPixel, old);
-    if (SAME_VIEW)
-        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-            fThere[c] = r[c].f;
-            fHere[c] = old[c].f;
-        }
     uint confidence = confidences[pixel];
-    float u = decisionFloat(decisionRandom(pixel, STREAM_TEMPORAL).x); // one for all reservoirs
-    vec3 color = vec3(0.0); // w_n chi(x) + w_h chi(T y)
+    float u = decisionNumber(pixel, STREAM_TEMPORAL); // one for all reservoirs
+    vec3 color = vec3(0.0);                           // w_n chi(x) + w_h chi(T y)
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        if (SAME_VIEW) { // every pixel sees what it saw, all shifts are identities
+            fHere[c] = old[c].f;
+            fThere[c] = r[c].f;
+        }
         float rho = ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f));
         float historyRho = ratio(targetOf(c, fHere[c]), targetOf(c, old[c].f));
         float weight; // w_n

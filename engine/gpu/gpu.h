@@ -71,7 +71,7 @@ enum class Usage : uint32_t {
     Storage = 1, // shader reads and writes
     Uniform = 2, // shader reads, uniform block
     Table =
-        4, // shader reads uvec4 elements: TABLE() and FETCH() of shaders/lib/table.glsl. Texel buffer or storage buffer
+        4, // shader reads uvec4 elements: TABLE() and FETCH() of shaders/lib/lanes.glsl. Texel buffer or storage buffer
     Readback = 8, // host reads; copy target
 };
 constexpr Usage operator|(Usage a, Usage b)

@@ -42,14 +42,14 @@ struct Inspector {
         return {list, count};
     }
 
-    // A table as a storage texel buffer (lib/table.glsl).
+    // A table as a storage texel buffer (lib/lanes.glsl).
     bool isTableImage(const spvc_reflected_resource& image) const
     {
         const spvc_type type = spvc_compiler_get_type_handle(compiler, image.type_id);
         return spvc_type_get_image_dimension(type) == SpvDimBuffer;
     }
 
-    // A block that is a table stored in a storage buffer: one member, named after the block (lib/table.glsl).
+    // A block that is a table stored in a storage buffer: one member, named after the block (lib/lanes.glsl).
     bool isTableBlock(const spvc_reflected_resource& block) const
     {
         const spvc_type type = spvc_compiler_get_type_handle(compiler, block.base_type_id);

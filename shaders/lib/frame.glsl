@@ -2,7 +2,7 @@
 #ifndef SHADERS_LIB_FRAME_GLSL
 #define SHADERS_LIB_FRAME_GLSL
 
-#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "lib/lanes.glsl"
 #include "lib/random.glsl"
 #include "shared/frame.h"
 #include "shared/streams.h"
@@ -25,21 +25,13 @@ void addAlone(uint counter, uint amount)
     if (before + amount < before) atomicAdd(counters[2u * counter + 1u], 1u);
 }
 
-// Whichever invocations arrive here together: one of them adds for all. No control flow stands between sum and choice, so
-// that both are among the same ones. (What a subgroup counts in a frame is far below 2^32.)
+// (What a subgroup counts in a frame is far below 2^32.)
 void addToCounter(uint counter, uint amount)
 {
     if (COUNTERS == COUNTERS_OFF) return;
-    if (COUNTERS == COUNTERS_SUBGROUP) {
-        uint sum = subgroupAdd(amount);
-        amount = subgroupElect() ? sum : 0u;
-    }
+    if (COUNTERS == COUNTERS_SUBGROUP) amount = sumInOneLane(amount);
     addAlone(counter, amount);
 }
-
-// By its bits: compilers that are told of no such values take isnan and isinf away.
-bool isFinite(float value) { return (floatBitsToUint(value) & 0x7f800000u) != 0x7f800000u; }
-bool isFinite(vec3 value) { return isFinite(value.x) && isFinite(value.y) && isFinite(value.z); }
 
 // The one place that looks for non-finite values: such a value becomes 0 and is counted, never passed on silently.
 vec3 finiteOrCounted(vec3 value, uint stage)
@@ -54,5 +46,6 @@ uvec4 decisionRandom(uint pixel, uint stream)
 {
     return randomBlock(PathSeed(frame.frame, pixel), stream, uvec2(frame.key0, frame.key1));
 }
+float decisionNumber(uint pixel, uint stream) { return decisionFloat(decisionRandom(pixel, stream).x); } // [0, 1)
 
 #endif

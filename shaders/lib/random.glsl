@@ -24,10 +24,7 @@ struct PathSeed {
     uint pixel; // y * width + x
 };
 
-uvec4 randomBlock(PathSeed seed, uint block, uvec2 key)
-{
-    return pcg4d(uvec4(seed.frame ^ key.y, seed.pixel, block, key.x));
-}
+uvec4 randomBlock(PathSeed seed, uint block, uvec2 key) { return pcg4d(uvec4(seed.frame ^ key.y, seed.pixel, block, key.x)); }
 
 // [0, 1), never 1: 24 bits.
 float unitFloat(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8; }

@@ -1,32 +1,27 @@
-// The paths that a pixel's reservoirs choose from: those of one new path tree. With integrand.glsl all that resampling
-// knows of light transport; tests put a closed-form integrand in place of both.
+// The paths that a pixel's reservoirs choose from: those of one new path tree.
 #ifndef SHADERS_PATH_CANDIDATES_GLSL
 #define SHADERS_PATH_CANDIDATES_GLSL
 
-#include "path/primary_hit.glsl"
+#include "path/domain.glsl"
 #include "path/walk.glsl"
-
-// Defined by the including stage: takes a path that carries light. f is its contribution in primary sample space, that is
-// over the density that drew it; f times `density` is f(Y), in the measure that shifts preserve.
-void offer(PathSample y, vec3 f, float density);
 
 PathSeed candidateSeed;
 
 bool visit(Vertex x) { return true; }
-bool wants(uint leaf) { return true; }
+bool wants(uint pathId) { return true; }
 bool goesOn(uint k) { return k < MAX_BOUNCES || HAS_REACHABLE_LIGHT; }
-void emit(uint leaf, vec3 f, Ending e)
+void emit(uint pathId, vec3 f, Ending e)
 {
     float density;
-    PathSample y = cutPath(candidateSeed, leaf, e, density);
+    PathSample y = sampleOf(candidateSeed, pathId, e, density);
     offer(y, f, density);
 }
 
 // False when the primary ray left the scene: nothing to integrate. `emission` is what the pixel sees directly.
-bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission)
+bool offerCandidates(PathSeed seed, uvec2 at, out vec3 emission)
 {
     candidateSeed = seed;
-    PrimaryHit hit = loadPrimaryHit(pixel);
+    PrimaryHit hit = loadPrimaryHit(at);
     if (hit.seen) {
         footprint = footprintOf(frame.camera, hit.s.position, hit.s.geometricNormal, hit.wo);
         walk(hit.s, hit.wo, seed);

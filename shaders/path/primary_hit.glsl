@@ -1,10 +1,18 @@
-// What a pixel sees in this frame, from the stored hit of primary.comp.
+// What each pixel sees, as primary.comp left it, in this frame and in the one before. Binding 0 of every stage that asks.
 #ifndef SHADERS_PATH_PRIMARY_HIT_GLSL
 #define SHADERS_PATH_PRIMARY_HIT_GLSL
 
-#include "path/surfaces.glsl"
 #include "scene/camera.glsl"
 #include "scene/lights.glsl"
+
+TABLE(SET_PASS, 0, Surfaces);
+
+Hit seenBy(uint pixel, bool previous)
+{
+    uint slice = previous ? frame.previousSlice : frame.slice;
+    uvec4 words = FETCH(Surfaces, slice * frame.width * frame.height + pixel);
+    return Hit(words.x, uintBitsToFloat(words.yz), 0.0);
+}
 
 struct PrimaryHit {
     bool seen;     // else the ray met the environment
@@ -13,19 +21,18 @@ struct PrimaryHit {
     vec3 emission; // radiance that the pixel sees directly
 };
 
-PrimaryHit loadPrimaryHit(uvec2 pixel)
+PrimaryHit loadPrimaryHit(uvec2 at)
 {
-    uvec4 words = seenBy(pixel.y * frame.width + pixel.x, false);
+    Hit stored = seenBy(at.y * frame.width + at.x, false);
     PrimaryHit hit;
-    hit.seen = words.x != NO_HIT;
+    hit.seen = stored.triangle != NO_HIT;
     if (hit.seen) {
-        vec2 barycentric = uintBitsToFloat(words.yz);
-        hit.wo = towardsCamera(frame.camera, hitPosition(words.x, barycentric));
-        hit.s = loadSurface(words.x, barycentric, hit.wo);
+        hit.wo = towardsCamera(frame.camera, hitPosition(stored.triangle, stored.barycentric));
+        hit.s = loadSurface(stored.triangle, stored.barycentric, hit.wo);
         hit.emission = hit.s.emission;
     } else {
         uint alphaSeed;
-        hit.emission = loadEnvironment(pixelRay(pixel, alphaSeed).direction).rgb;
+        hit.emission = loadEnvironment(pixelRay(at, alphaSeed).direction).rgb;
     }
     return hit;
 }

@@ -1,58 +1,13 @@
 // The one path walker. It traces the path tree of one seed from a primary hit. Sampling, replay and plain path tracing
-// differ only in the four functions that the including stage defines: visit, wants, goesOn, emit.
+// differ only in four functions of the including stage (path/hooks.glsl): visit, wants, goesOn, emit.
 #ifndef SHADERS_PATH_WALK_GLSL
 #define SHADERS_PATH_WALK_GLSL
 
-#include "lib/loop.glsl"
-#include "path/leaf.glsl"
-#include "scene/bsdf.glsl"
-#include "scene/camera.glsl"
+#include "path/reconnection.glsl"
 #include "scene/lights.glsl"
-
-#ifndef FIRST_VERTEX
-#define FIRST_VERTEX 1u // k of the vertex that a walk starts from
-#endif
 
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
-
-// x_k, about to scatter.
-struct Vertex {
-    uint k;
-    Surface s;
-    Bsdf bsdf;
-    vec3 throughput; // of the scattering events before x_k, over their densities
-};
-
-// A scattered ray, x_k -> x_(k+1).
-struct Segment {
-    Scatter scatter;
-    Hit hit;
-    float distance; // from where the ray departed; RAY_MAX: the environment
-    float arrival;  // p_k G: density over area at x_(k+1); over solid angle for the environment
-};
-
-// The last step of a path, from x_k to light.
-struct Ending {
-    vec3 direction; // unit
-    vec3 radiance;  // from there; for Dirac lights over the density
-    vec3 weighted;  // by what the throughput is multiplied
-    float lightPdf; // of next-event estimation, solid angle at x_k; 0 where it cannot find this light; -1: a Dirac light
-};
-
-struct ShadowRay {
-    Ray ray;
-    uint alphaSeed;
-};
-
-bool visit(Vertex x);                    // x_k was reached; false: go no further
-bool wants(uint leaf);                   // is this path, by next-event estimation, of interest?
-bool goesOn(uint k);                     // is any path of interest that scatters at x_k or beyond?
-void emit(uint leaf, vec3 f, Ending e);  // a path that carries light. f is its MIS-weighted contribution over its density:
-                                         // the integrand in primary sample space
-void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay shadow); // now, or after the walk: DEFERS_SHADOW_RAYS
-
-#include "path/trunk.glsl"
 
 uint tracedRays = 0u;
 uint shadowRays = 0u;
@@ -69,20 +24,21 @@ ShadowRay shadowRay(Surface s, bool infinite, vec3 target, vec3 targetNormal, fl
     vec3 origin = departure(s, direction);
     vec3 d = offsetOrigin(target, targetNormal, -direction, targetOffset) - origin;
     float distance = length(d);
-    return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : Ray(origin, d / distance, distance * (1.0 - 4.0 * POSITION_ERROR)),
-                     alphaSeed);
+    Ray finite = Ray(origin, d / distance, distance * (1.0 - 4.0 * POSITION_ERROR));
+    return ShadowRay(infinite ? Ray(origin, direction, RAY_MAX) : finite, alphaSeed);
 }
 
 bool isBlocked(ShadowRay shadow) { return shadow.ray.tMax > 0.0 && occluded(shadow.ray, shadow.alphaSeed); }
 
 #ifndef DEFERS_SHADOW_RAYS
-void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay shadow)
+void emitUnlessBlocked(uint pathId, vec3 f, Ending e, ShadowRay shadow)
 {
-    if (!isBlocked(shadow)) emit(leaf, f, e);
+    if (!isBlocked(shadow)) emit(pathId, f, e);
 }
 #endif
 
-// Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight times f L / p_N, without 0/0.
+// Next-event estimation at x_k. f L / (p_N + p_B) is the balance heuristic's weight (Veach and Guibas 1995) times f L / p_N,
+// without 0/0.
 void emitByLight(Vertex x, PathSeed seed)
 {
     uvec4 random = pathRandom(seed, x.k, PURPOSE_LIGHT);
@@ -97,7 +53,7 @@ void emitByLight(Vertex x, PathSeed seed)
         e.lightPdf = -1.0;
     }
     ++shadowRays;
-    emitUnlessBlocked(makeLeaf(x.k, BY_LIGHT), x.throughput * e.weighted, e,
+    emitUnlessBlocked(makePathId(x.k, BY_LIGHT), x.throughput * e.weighted, e,
                       shadowRay(x.s, light.infinite, light.target, light.normal, light.offset, light.direction, random.w));
 }
 
@@ -105,7 +61,7 @@ void emitByLight(Vertex x, PathSeed seed)
 void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
 {
     if (MAX_BOUNCES == 0u) return;
-    trunk = NO_TRUNK;
+    reconnectionVertex = NO_VERTEX;
     Vertex x;
     x.s = s;
     x.bsdf = bsdf;
@@ -113,7 +69,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
     x.k = FIRST_VERTEX;
     LOOP_BEGIN(x.k <= MAX_BOUNCES)
         if (absorbs(x.bsdf) || !visit(x)) return;
-        if (wants(makeLeaf(x.k, BY_LIGHT))) emitByLight(x, seed);
+        if (wants(makePathId(x.k, BY_LIGHT))) emitByLight(x, seed);
         if (!goesOn(x.k)) return;
 
         uvec4 random = pathRandom(seed, x.k, PURPOSE_SCATTER);
@@ -125,7 +81,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
         wo = -to.scatter.direction;
         vec3 origin = departure(x.s, to.scatter.direction);
         to.hit = nearestHit(Ray(origin, to.scatter.direction, RAY_MAX), random.w);
-        departTrunk(x, to.scatter);
+        noteDeparture(x, to.scatter);
 
         // Light found by scattering, weighted against next-event estimation.
         Ending e = Ending(to.scatter.direction, vec3(0.0), vec3(0.0), 0.0);
@@ -147,11 +103,11 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
         }
         if (e.radiance != vec3(0.0)) {
             e.weighted = e.radiance * (to.scatter.dirac ? 1.0 : to.scatter.pdf / (to.scatter.pdf + e.lightPdf));
-            offerLight(x, to, next.position);
-            emit(makeLeaf(x.k, BY_SCATTER), x.throughput * e.weighted, e);
+            noteLight(x, to, next.position);
+            emit(makePathId(x.k, BY_SCATTER), x.throughput * e.weighted, e);
         }
         if (to.hit.triangle == NO_HIT) return;
-        joinTrunk(x, to, next);
+        noteArrival(x, to, next);
         x.s = next;
         x.bsdf = makeBsdf(next, wo);
         ++x.k;

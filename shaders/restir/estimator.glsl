@@ -15,7 +15,7 @@ vec3 colorOf(uint c, vec3 f)
     return target > 0.0 ? frame.resolve[c].xyz * (f / target) : vec3(0.0);
 }
 
-// Color of reservoir c: resolve[c] f(Y) W with W = S / p_hat_c(f(Y)).
+// Color of reservoir c: resolve[c] f(Y) W with W = S / p_hat_c(f(Y)); for RGB this is S, which Algorithm 3 returns.
 vec3 resolved(uint c, Reservoir r) { return colorOf(c, r.f) * (r.weightSum + r.carry); }
 
 #endif

@@ -1,4 +1,6 @@
-// Reservoirs and the three ways to merge samples into them. Knows neither scenes nor buffers nor colors.
+// Reservoirs and the three ways to merge samples into them: consider, mergeHistory, mergeNeighbor. Knows neither scenes nor
+// buffers nor colors. Equations and algorithms by number alone, in all shaders, are those of "RGB ReSTIR" (README.md), which
+// stands on Lin et al. 2022, "Generalized Resampled Importance Sampling" (doi 10.1145/3528223.3530158).
 //
 // A reservoir holds (Y, f(Y), S): a path, its contribution in the domain (pixel and frame) where it now lives, and the sum
 // of weights S: an unbiased estimate of the integral of the target p_hat = <target, f>. W = S / p_hat(Y) is never formed;
@@ -7,7 +9,25 @@
 #ifndef SHADERS_RESTIR_RESERVOIR_GLSL
 #define SHADERS_RESTIR_RESERVOIR_GLSL
 
-#include "restir/path_sample.glsl"
+#include "lib/lanes.glsl"
+#include "lib/random.glsl"
+
+// From vertex x_r on a reconnected path is kept as it is: what shifts need to know of that part.
+struct Reconnection {
+    uint triangle;    // of x_r; NO_HIT: x_r is the environment in `direction`
+    vec2 barycentric; // of x_r
+    float lightPdf;   // of the path's light by the other technique, solid angle at x_r; 0: no weight depends on x_(r-1)
+    vec3 direction;   // x_r -> x_(r+1), unit
+    vec3 suffix;      // radiance that arrives at x_r from there, over the densities that drew it
+};
+
+// One path of a path tree, by the numbers that drew it. Opaque to resampling, which only moves it about.
+struct PathSample {
+    PathSeed seed;
+    uint pathId;            // which path of the tree: path/path_id.glsl
+    uint reconnectionIndex; // r of the reconnection vertex x_r; 0: the whole path is replayed
+    Reconnection reconnection; // when reconnectionIndex > 0
+};
 
 struct Reservoir {
     PathSample chosen;  // Y
@@ -57,15 +77,52 @@ bool mergeHistory(inout Reservoir here, Reservoir history, float rho, float hist
         precise float value = history.weightSum * historyRho;
         precise float roundedOff = fma(history.weightSum, historyRho, -value);
         precise float change = (weight - eps * value) + roundedOff + history.carry * historyRho * (1.0 - eps);
-        precise float sum = value + change;
-        precise float carry = change - (sum - value);
-        here.weightSum = sum;
-        here.carry = carry;
+        here.weightSum = sumOf(value, change, here.carry);
     } else { // 1 - eps would cancel
         here.weightSum = weight + history.weightSum * (historyConfidence / confidence) * eps;
         here.carry = 0.0;
     }
     return !(u * here.weightSum < weight);
+}
+
+// Defensive pairwise MIS (Lin et al. 2022), in ratios: the merge of a pixel's own reservoir (confidence c_i) with those of its
+// neighbors (c_j; together M_n, and M with the own), one after the other. a and b are the ratios rho of the neighbor's sample
+// (here over there) and of the own one (there over here):
+//     w_j = S_j (c_j / M) M_n a / (M_n + c_i a),    w_i = S_i (1 - sum of eps_j),    eps_j = (c_j / M) M_n b / (M_n b + c_i)
+// In complement form S' = S_i + sum of (w_j - eps_j S_i): equal domains change nothing, to the last bit.
+struct PairwiseMerge {
+    float confidence;         // c_i
+    float neighborConfidence; // M_n
+    Reservoir neighbors;      // which of their samples is chosen, and the sum of w_j
+    float change;             // S' - S_i, with what rounding took before
+    float kept;               // m_i, MIS weight of the own sample
+};
+
+PairwiseMerge beginMerge(Reservoir own, float confidence, float neighborConfidence)
+{
+    return PairwiseMerge(confidence, neighborConfidence, EMPTY, own.carry, 1.0);
+}
+
+// True when the neighbor's sample is chosen among the neighbors': the caller replaces sample and f of m.neighbors. `weight`: w_j.
+bool mergeNeighbor(inout PairwiseMerge m, Reservoir own, Reservoir neighbor, float a, float b, float confidence, float u,
+                   out precise float weight)
+{
+    precise float part = confidence / (m.confidence + m.neighborConfidence); // c_j / M
+    weight = (neighbor.weightSum + neighbor.carry) * part * (m.neighborConfidence / m.confidence) *
+             share(m.confidence, a, m.neighborConfidence);
+    precise float taken = part * share(m.neighborConfidence, b, m.confidence); // eps_j
+    precise float change = m.change + (weight - taken * own.weightSum);
+    m.change = change;
+    m.kept -= taken;
+    return consider(m.neighbors, weight, u);
+}
+
+// True when the sample chosen among the neighbors' is chosen over the own one, of weight w_i: the caller replaces sample and f.
+bool endMerge(PairwiseMerge m, inout Reservoir own, float u)
+{
+    bool replaced = m.neighbors.weightSum > 0.0 && !consider(m.neighbors, own.weightSum * m.kept, u);
+    own.weightSum = sumOf(own.weightSum, m.change, own.carry);
+    return replaced;
 }
 
 #endif

@@ -1,12 +1,11 @@
 // How reservoirs lie in tables, RESERVOIR_COUNT a pixel, and pixel by pixel, since neighbors are read one by one. A set of
-// them is two tables: heads (which path, f, S), and, for shift maps that reconnect, what they know of the path from its reconnection
-// vertex on. The confidence (frames; 32 bits, so that it never wraps) is a word a pixel, since all reservoirs share it. What
-// spatial_trace hands to spatial_gather lies in the same order, slot by slot. Rows are counted in shared/rows.h.
+// them is two tables: heads (which path, f, S), and, for shift maps that reconnect, what is kept of the path from x_r on. The
+// confidence (frames; 32 bits, so that it never wraps) is a word a pixel, since all reservoirs share it. What spatial_trace
+// hands to spatial_gather lies in the same order, slot by slot. Rows are counted in shared/rows.h.
 #ifndef SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 #define SHADERS_RESTIR_RESERVOIR_STORE_GLSL
 
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 #include "restir/reservoir.glsl"
 #include "shared/rows.h"
 
@@ -32,15 +31,15 @@ vec3 inChannel(uint c, float x)
 
 // LOAD_RESERVOIRS defines, over a set's two tables: load<SET>Head and load<SET>Path, one reservoir without and its path;
 // load<SET>, all of a pixel's. STORE_RESERVOIRS: store<SET>. Arrays have MAX_RESERVOIRS elements, of which RESERVOIR_COUNT are
-// used: glslang 12 can neither copy nor initialize arrays sized by a specialisation constant.
+// used (lib/lanes.glsl).
 #define LOAD_RESERVOIRS(SET, HEADS, PATHS)                                                                             \
     Reservoir load##SET##Head(uint pixel, uint c)                                                                      \
     {                                                                                                                  \
         Reservoir r = EMPTY;                                                                                           \
         uvec4 a = FETCH(HEADS, headRow(pixel, c));                                                                     \
         r.chosen.seed = PathSeed(a.x, a.y);                                                                            \
-        r.chosen.leaf = a.z & 0xffffu;                                                                                 \
-        r.chosen.joint = a.z >> 16u;                                                                                   \
+        r.chosen.pathId = a.z & 0xffffu;                                                                               \
+        r.chosen.reconnectionIndex = a.z >> 16u;                                                                       \
         r.weightSum = uintBitsToFloat(a.w);                                                                            \
         if (ONE_CHANNEL) {                                                                                             \
             r.f = inChannel(c, uintBitsToFloat(FETCH(HEADS, headRow(pixel, RESERVOIR_COUNT))[c]));                     \
@@ -78,7 +77,8 @@ vec3 inChannel(uint c, float x)
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
             PathSample y = r[c].chosen;                                                                                \
             STORE(HEADS, headRow(pixel, c),                                                                            \
-                  uvec4(y.seed.frame, y.seed.pixel, y.leaf | y.joint << 16u, floatBitsToUint(r[c].weightSum)));        \
+                  uvec4(y.seed.frame, y.seed.pixel, y.pathId | y.reconnectionIndex << 16u,                             \
+                        floatBitsToUint(r[c].weightSum)));                                                             \
             f[c] = onlyChannel(c, r[c].f);                                                                             \
             carry[c] = r[c].carry;                                                                                     \
             if (!ONE_CHANNEL)                                                                                          \
@@ -123,5 +123,21 @@ vec3 inChannel(uint c, float x)
                 STORE(TABLE_NAME, slotRow(pixel, slot, c), uvec4(floatBitsToUint(f[c]), neighbor));                    \
         }                                                                                                              \
     }
+
+// How often do the reservoirs of a pixel agree? What they share is shifted once.
+void countTrees(Reservoir r[MAX_RESERVOIRS])
+{
+    if (RESERVOIR_COUNT == 1u) return;
+    bool held = true;
+    uint trees = 0u;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        held = held && r[c].weightSum > 0.0;
+        bool isNew = true;
+        for (uint before = 0u; before < c; ++before) isNew = isNew && r[before].chosen.seed != r[c].chosen.seed;
+        trees += isNew ? 1u : 0u;
+    }
+    addToCounter(COUNTER_HELD, held ? 1u : 0u);
+    addToCounter(COUNTER_TREES, held ? trees : 0u);
+}
 
 #endif

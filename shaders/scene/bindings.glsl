@@ -3,7 +3,6 @@
 #define SHADERS_SCENE_BINDINGS_GLSL
 
 #include "lib/frame.glsl"
-#include "lib/table.glsl"
 #include "shared/scene.h"
 
 TABLE(SET_SCENE, 0, Nodes);

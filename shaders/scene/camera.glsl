@@ -14,6 +14,15 @@ Ray cameraRay(CameraUniform camera, vec2 at)
     return Ray(camera.position.xyz, normalize(camera.forward.xyz + offset), RAY_MAX);
 }
 
+// The inverse: xy / z is the picture point in [-1, 1]^2, y up, if z > 0. z is the depth; 1 for parallel rays.
+vec3 project(CameraUniform camera, vec3 position)
+{
+    vec3 d = position - camera.position.xyz;
+    vec3 right = camera.right.xyz;
+    vec3 up = camera.up.xyz;
+    return vec3(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up), ORTHOGRAPHIC ? 1.0 : dot(d, camera.forward.xyz));
+}
+
 // The ray of a pixel in this frame: through its center, or anywhere through it. `alphaSeed` decides about transparent surfaces.
 Ray pixelRay(uvec2 pixel, out uint alphaSeed)
 {

@@ -4,15 +4,15 @@
 // depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of
 // flagged triangles only.
 //
-// Written for drivers that run 8 lanes under masks (lib/loop.glsl): hence planes picked by the ray's signs, and a stack in
+// Written for drivers that run 8 lanes under masks (lib/lanes.glsl): hence planes picked by the ray's signs, and a stack in
 // registers. Mesa's CPU driver stores to an indexed array lane by lane, each behind a branch that is mispredicted when
 // lanes differ: shifting all entries costs less, and traversal gains a quarter. SwiftShader loses a third by it.
 #ifndef SHADERS_SCENE_INTERSECT_GLSL
 #define SHADERS_SCENE_INTERSECT_GLSL
 
-#include "lib/loop.glsl"
+#include "lib/basis.glsl"
+#include "lib/lanes.glsl"
 #include "lib/offset.glsl"
-#include "lib/table.glsl"
 #include "shared/bvh.h"
 
 const uint NO_HIT = 0xffffffffu;
@@ -53,16 +53,6 @@ float distanceToScene(vec3 origin, vec3 direction)
     return max(dot(center - origin, direction) - 2.0 * length(halfExtent), 0.0);
 }
 
-// Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-void frameOf(vec3 n, out vec3 tangent, out vec3 bitangent)
-{
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float b = n.x * n.y * a;
-    tangent = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
-    bitangent = vec3(b, s + n.y * n.y * a, -n.y);
-}
-
 float finiteInverse(float x)
 {
     const float SMALLEST = 1e-15; // moves a ray by less than 1e-15 of its length
@@ -76,17 +66,16 @@ TraversalRay prepare(Ray ray)
     r.origin = ray.origin + r.advance * ray.direction;
     r.direction = ray.direction;
     r.inverse = vec3(finiteInverse(ray.direction.x), finiteInverse(ray.direction.y), finiteInverse(ray.direction.z));
-    frameOf(ray.direction, r.tangent, r.bitangent);
+    mat3 basis = basisFromNormal(ray.direction);
+    r.tangent = basis[0];
+    r.bitangent = basis[1];
     vec3 size = abs(r.origin);
     r.tMin = -POSITION_ERROR * max(size.x, max(size.y, size.z));
     r.signs = (r.inverse.x < 0.0 ? 1u : 0u) | (r.inverse.y < 0.0 ? 2u : 0u) | (r.inverse.z < 0.0 ? 4u : 0u);
     return r;
 }
 
-float byteAt(uint word, int index)
-{
-    return float(int((word >> (8 * index)) & 255u));
-}
+float byteAt(uint word, int index) { return float(int((word >> (8 * index)) & 255u)); }
 
 // `bits` where the ray within [tMin, tMax] meets slot `i` of the four whose planes are packed in the words; else 0.
 uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin, float tMax, uint bits)
@@ -97,19 +86,16 @@ uint meetsSlot(int i, uvec3 near, uvec3 far, vec3 scale, vec3 shift, float tMin,
     float farX = byteAt(far.x, i) * scale.x + shift.x;
     float farY = byteAt(far.y, i) * scale.y + shift.y;
     float farZ = byteAt(far.z, i) * scale.z + shift.z;
-    precise float enterXY = nearX > nearY ? nearX : nearY;
-    precise float enterZ = nearZ > tMin ? nearZ : tMin;
-    precise float enter = enterXY > enterZ ? enterXY : enterZ;
-    precise float leaveXY = farX < farY ? farX : farY;
-    precise float leaveZ = farZ < tMax ? farZ : tMax;
-    precise float leave = leaveXY < leaveZ ? leaveXY : leaveZ;
+    precise float enterXY = GREATER(nearX, nearY);
+    precise float enterZ = GREATER(nearZ, tMin);
+    precise float enter = GREATER(enterXY, enterZ);
+    precise float leaveXY = LESSER(farX, farY);
+    precise float leaveZ = LESSER(farZ, tMax);
+    precise float leave = LESSER(leaveXY, leaveZ);
     return enter <= leave ? bits : 0u;
 }
 
-uint slotBits(uint slot)
-{
-    return (7u << (3u * slot)) | (1u << (24u + slot));
-}
+uint slotBits(uint slot) { return (7u << (3u * slot)) | (1u << (24u + slot)); }
 
 // The children that the ray meets, as the node's masks with the others' bits cleared.
 uint meetChildren(TraversalRay r, float tMax, uvec4 grid, uint masks, uvec4 a, uvec4 b, uvec4 c)
@@ -295,7 +281,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             LOOP_END(records == 0u && (group & 255u) != 0u && (any || visits < NODES_BEFORE_TRIANGLES))
 
             LOOP_BEGIN(records != 0u && !asks)
-                bool valid = records != 0u && !asks; // a lane that has left to ask must keep what it asks (lib/loop.glsl)
+                bool valid = records != 0u && !asks; // a lane that has left to ask must keep what it asks (lib/lanes.glsl)
                 uint earlier = masks & ((records & (0u - records)) - 1u); // mask bits below the lowest
                 uint record = valid ? BVH_RECORD_STRIDE * (firstRecord + uint(bitCount(earlier))) : 0u;
                 records &= records - 1u;
@@ -338,15 +324,9 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
 }
 
 // The nearest triangle before tMax; of several at the same t the one of the lowest index.
-Hit closestHit(Ray ray, uint alphaSeed)
-{
-    return traverse(ray, alphaSeed, false);
-}
+Hit closestHit(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, false); }
 
 // Is there any triangle before tMax?
-bool occluded(Ray ray, uint alphaSeed)
-{
-    return traverse(ray, alphaSeed, true).triangle != NO_HIT;
-}
+bool occluded(Ray ray, uint alphaSeed) { return traverse(ray, alphaSeed, true).triangle != NO_HIT; }
 
 #endif

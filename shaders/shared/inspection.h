@@ -10,7 +10,7 @@ SHARED_BEGIN
 struct Inspection {
     uint seedFrame; // the sample: which walk drew it, frame and pixel,
     uint seedPixel;
-    uint leafAndJoint;    // which path of that walk (low half), where it is reconnected (high half; 0: replayed)
+    uint pathIdAndReconnection; // which path of that walk (low half); reconnection index r (high half; 0: replayed)
     uint lengthAndShifts; // scattering events (low half); spatial shifts to and from here: tried (8 bits), failed (8
                           // bits)
     float weightSum;      // S

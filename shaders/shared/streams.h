@@ -13,7 +13,7 @@ SHARED_CONST uint STREAM_PATH = 0u;     // k >= 1, so blocks 2.. are free of the
 SHARED_CONST uint PURPOSE_LIGHT = 0u;   // light pick; point on the light (2); alpha seed of the shadow ray
 SHARED_CONST uint PURPOSE_SCATTER = 1u; // lobe; direction (2); alpha seed of the scattered ray
 // Selection numbers, keyed by the pixel and frame that select, never by a stored seed.
-SHARED_CONST uint STREAM_CANONICAL = 0x10000u; // + leaf
+SHARED_CONST uint STREAM_CANONICAL = 0x10000u; // + path id
 SHARED_CONST uint STREAM_TEMPORAL = 0x20000u;
 SHARED_CONST uint STREAM_SPATIAL = 0x30000u;   // + slot
 SHARED_CONST uint STREAM_NEIGHBORS = 0x40000u; // + slot

@@ -7,7 +7,7 @@ import sys
 
 from sources import report, source_files
 
-CONTRACT = ["shaders/path/integrand.glsl", "shaders/path/candidates.glsl"]
+CONTRACT = ["shaders/path/domain.glsl", "shaders/path/shift.glsl", "shaders/path/candidates.glsl"]
 RESAMPLING = ["canonical", "temporal", "spatial_trace", "spatial_gather"]
 
 # Folder -> what it may include from the repository, besides itself. The longest matching folder counts.
@@ -27,7 +27,7 @@ ALLOWED = {
     "shaders/scene": ["shaders/shared", "shaders/lib"],
     "shaders/path": ["shaders/shared", "shaders/lib", "shaders/scene", "shaders/restir"],
     "shaders/restir": ["shaders/shared", "shaders/lib"],
-    # The stages that resample know no scene: their tests put toys in the place of these two.
+    # The stages that resample know no scene: their tests put toys in the place of these three.
     **{f"shaders/{stage}.comp": ["shaders/shared", "shaders/lib", "shaders/restir", *CONTRACT] for stage in RESAMPLING},
     "shaders": [""],
     "tests": [""],

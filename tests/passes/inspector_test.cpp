@@ -119,7 +119,7 @@ TEST_F(InspectorTest, PathsLeadFromThePixelToLight)
                 const uint32_t column = pixel % settings.width, row = pixel / settings.width;
                 EXPECT_NEAR(begin.x, column + 0.5, 0.02);
                 EXPECT_NEAR(begin.y, row + 0.5, 0.02);
-                joined += seen.leafAndJoint >> 16 > 0;
+                joined += seen.pathIdAndReconnection >> 16 > 0;
                 foreign += seen.seedPixel != pixel;
                 const bool atSpot = std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const auto& light) {
                     return glm::distance(end, inPicture(glm::dvec3(light.position), settings)) < 0.02;

@@ -8,18 +8,18 @@ namespace support
 const std::vector<PlantedError>& plantedErrors()
 {
     static const std::vector<PlantedError> list = {
-        {"WeightTimes1_02", "restir/reservoir.glsl", "        here.weightSum = sum;\n",
-         "        here.weightSum = 1.02 * sum;\n"},
+        {"WeightTimes1_02", "restir/reservoir.glsl", "here.weightSum = sumOf(value,",
+         "here.weightSum = 1.02 * sumOf(value,"},
         {"MissingJacobian", "canonical.comp", "finiteOrCounted(f * density, STAGE)", "f"},
         {"SwappedTemporalMis", "restir/reservoir.glsl", "here.weightSum * rest(historyConfidence, rho, confidence);",
          "here.weightSum * rest(confidence, rho, historyConfidence);"},
-        {"SwappedSpatialMis", "spatial_gather.comp", "part * share(neighborConfidence, b, confidence);",
-         "part * share(confidence, b, neighborConfidence);"},
+        {"SwappedSpatialMis", "restir/reservoir.glsl", "part * share(m.neighborConfidence, b, m.confidence);",
+         "part * share(m.confidence, b, m.neighborConfidence);"},
         {"TemporalConfidenceOffByOne", "restir/reservoir.glsl",
          "here.weightSum * rest(historyConfidence, rho, confidence);",
          "here.weightSum * rest(historyConfidence + 1.0, rho, confidence);"},
-        {"SpatialConfidenceOffByOne", "spatial_gather.comp", "share(confidence, a, neighborConfidence);",
-         "share(confidence, a, neighborConfidence + 1.0);"},
+        {"SpatialConfidenceOffByOne", "restir/reservoir.glsl", "share(m.confidence, a, m.neighborConfidence);",
+         "share(m.confidence, a, m.neighborConfidence + 1.0);"},
         {"StaleTarget", "temporal.comp", "r[c].f = fHere[c];", "r[c].f = old[c].f;"},
         {"EmptyHistoryForgotten", "temporal.comp", "if (historyConfidence == 0u ||",
          "if (loadHistoryHead(previousPixel, 0u).weightSum == 0.0 || historyConfidence == 0u ||"},
@@ -39,17 +39,19 @@ const std::vector<PlantedError>& plantedErrors()
         {"ColorFromTheNeighborsDomain", "spatial_gather.comp", "weighted += weight * colorOf(c, fHere);",
          "weighted += weight * colorOf(c, other.f);"},
         {"ColorByTheOwnMisWeight", "spatial_gather.comp", "weighted += weight * colorOf(c, fHere);",
-         "weighted += taken * (other.weightSum + other.carry) * colorOf(c, fHere);"},
-        {"ColorOfTheOwnSampleWhole", "spatial_gather.comp", "(r[c].weightSum * kept[c] + r[c].carry)",
+         "weighted += otherConfidence / (confidence + neighborConfidence) * share(neighborConfidence, b, confidence) "
+         "*\n"
+         "            (other.weightSum + other.carry) * colorOf(c, fHere);"},
+        {"ColorOfTheOwnSampleWhole", "spatial_gather.comp", "(r[c].weightSum * merge[c].kept + r[c].carry)",
          "(r[c].weightSum + r[c].carry)"},
-        {"ColorOfAKeptShare2PercentTooLarge", "spatial_gather.comp", "(r[c].weightSum * kept[c] + r[c].carry)",
-         "(r[c].weightSum * (kept[c] + 0.04 * (1.0 - kept[c])) + r[c].carry)"},
-        {"ColorOfTheFirstLeafTwice", "canonical.comp", "allPaths += f;",
+        {"ColorOfAKeptShare2PercentTooLarge", "spatial_gather.comp", "(r[c].weightSum * merge[c].kept + r[c].carry)",
+         "(r[c].weightSum * (merge[c].kept + 0.04 * (1.0 - merge[c].kept)) + r[c].carry)"},
+        {"ColorOfTheFirstPathTwice", "canonical.comp", "allPaths += f;",
          "allPaths += canonical[0].weightSum > 0.0 ? f : 2.0 * f;"},
         // Of these the toy knows nothing: they are in what it stands for.
-        {"MissingGeometryTerm", "path/integrand.glsl", "abs(dot(at.geometricNormal, direction)) / squared;",
+        {"MissingGeometryTerm", "path/shift.glsl", "abs(dot(at.geometricNormal, direction)) / squared;",
          "abs(dot(at.geometricNormal, direction));"},
-        {"MissingDeparture", "path/trunk.glsl", "trunk.arrival * trunk.departure;", "trunk.arrival;"},
+        {"MissingDeparture", "path/reconnection.glsl", "x.arrival * x.departure;", "x.arrival;"},
         // Faults that the program had until they were mended, each taken out of its mend again.
         {"SkyDecodedTwice", "scene/lights.glsl", "        vec4 environment = loadTexel(texel);\n",
          "        texel.y = min(uint(acos(clamp(l.direction.y, -1.0, 1.0)) / PI * float(scene.environmentHeight)),\n"

@@ -51,16 +51,16 @@ dvec3 measured(const OfferedPath& path) // f(Y)
     return dvec3(path.f) * double{path.density};
 }
 
-// The joint is the last vertex: x_r is the light.
+// x_r is the light.
 bool joinsLight(const OfferedPath& path)
 {
-    return path.joint == (path.leaf >> 1) + 1;
+    return path.reconnectionIndex == (path.pathId >> 1) + 1;
 }
 
 // x_r scatters on in a direction that was drawn, not towards a sampled light.
 bool departs(const OfferedPath& path)
 {
-    return !joinsLight(path) && !(path.joint == (path.leaf >> 1) && (path.leaf & 1) == 0);
+    return !joinsLight(path) && !(path.reconnectionIndex == (path.pathId >> 1) && (path.pathId & 1) == 0);
 }
 
 // Around the direction from x_(r-1) to x_r: by x_r's barycentrics, or by the direction itself where that is the sky.
@@ -102,20 +102,20 @@ glm::uvec4 replacement(uint32_t k, const dvec3& numbers)
 bool treeOf(const OfferedPath& path, const ShiftedPath& in, uint32_t to, Tree& tree)
 {
     tree = {.pixel = to, .seedFrame = path.seedFrame, .seedPixel = path.seedPixel};
-    if (path.joint == 0) return true;
+    if (path.reconnectionIndex == 0) return true;
     if (in.before.position.w == 0) return false;
     const auto arrival = numbersOf(in.before, arrivals(path, in)(dvec2(0)));
     if (!arrival) return false;
-    tree.replaced[0] = replacement(path.joint - 1, *arrival);
+    tree.replaced[0] = replacement(path.reconnectionIndex - 1, *arrival);
     if (!departs(path)) return true;
     const auto departure = numbersOf(in.at, dvec3(path.direction));
-    if (departure) tree.replaced[1] = replacement(path.joint, *departure);
+    if (departure) tree.replaced[1] = replacement(path.reconnectionIndex, *departure);
     return departure.has_value();
 }
 
 bool isSamePath(const OfferedPath& a, const OfferedPath& b)
 {
-    return a.leaf == b.leaf && a.joint == b.joint && a.triangle == b.triangle;
+    return a.pathId == b.pathId && a.reconnectionIndex == b.reconnectionIndex && a.triangle == b.triangle;
 }
 
 std::string kindOf(const Scattering& at, const dvec3& direction)
@@ -126,7 +126,7 @@ std::string kindOf(const Scattering& at, const dvec3& direction)
 
 std::string kindOf(const OfferedPath& path, const ShiftedPath& in)
 {
-    if (path.joint == 0) return "replayed";
+    if (path.reconnectionIndex == 0) return "replayed";
     const std::string before = kindOf(in.before, arrivals(path, in)(dvec2(0)));
     return before + (joinsLight(path) ? " to light" : " to " + kindOf(in.at, dvec3(path.direction)));
 }
@@ -154,9 +154,9 @@ ShiftFindings findingsOf(ShiftLab& lab, Shift shift, uint32_t treesPerPixel)
     std::vector<OfferedPath> paths;
     std::vector<uint32_t> from, to;
     for (const OfferedPath& path : lab.offered(trees)) {
-        if (path.leaf == 0) continue;
+        if (path.pathId == 0) continue;
         // Reconnection alone shifts nothing else.
-        if (shift == Shift::Reconnection && path.joint == 0 && path.leaf != 2) continue;
+        if (shift == Shift::Reconnection && path.reconnectionIndex == 0 && path.pathId != 2) continue;
         paths.push_back(path);
         from.push_back(path.seedPixel);
         to.push_back(nearby(path.seedPixel));
@@ -174,7 +174,7 @@ ShiftFindings findingsOf(ShiftLab& lab, Shift shift, uint32_t treesPerPixel)
     const std::vector<OfferedPath> all = lab.offered(drawing);
     std::vector<OfferedPath> there(paths.size());
     for (size_t i = 0; i < drawn.size(); ++i)
-        there[drawn[i]] = all[i * shared::SHIFT_LEAVES + paths[drawn[i]].leaf - 2];
+        there[drawn[i]] = all[i * shared::SHIFT_PATHS + paths[drawn[i]].pathId - 2];
     const std::vector<ShiftedPath> back = lab.shifted(there, from);
 
     ShiftFindings found;
@@ -193,7 +193,7 @@ ShiftFindings findingsOf(ShiftLab& lab, Shift shift, uint32_t treesPerPixel)
         }
         const dvec3 arrived = dvec3(away[i].f) / double{path.density},
                     returned = dvec3(back[i].f) / double{there[i].density};
-        const double numeric = path.joint == 0 ? 1 : densityIn(path, away[i]) / densityIn(path, home[i]);
+        const double numeric = path.reconnectionIndex == 0 ? 1 : densityIn(path, away[i]) / densityIn(path, home[i]);
         const double j = glm::length(arrived) / glm::length(dvec3(there[i].f)),
                      jBack = glm::length(returned) / glm::length(dvec3(path.f));
         found.back.add(isDone(back[i]) ? relative(dvec3(back[i].f), measured(path)) : 1);

@@ -13,7 +13,7 @@ namespace support
 namespace
 {
 
-constexpr uint32_t MAX_BOUNCES = shared::SHIFT_LEAVES / 2;
+constexpr uint32_t MAX_BOUNCES = shared::SHIFT_PATHS / 2;
 
 shared::FrameUniform frameOf(const scene::Camera& camera, double lengthScale)
 {
@@ -60,7 +60,7 @@ ShiftLab::ShiftLab(gpu::Device& device, const std::string& kernels, passes::Shif
 std::vector<shared::OfferedPath> ShiftLab::offered(const std::vector<shared::Tree>& trees)
 {
     const gpu::Buffer asked = upload("Trees", trees);
-    const std::vector<shared::OfferedPath> none(trees.size() * shared::SHIFT_LEAVES);
+    const std::vector<shared::OfferedPath> none(trees.size() * shared::SHIFT_PATHS);
     const gpu::Buffer found = upload("Offered", none);
     run(kernels_ + "candidates_test", {{"Surfaces", &surfaces_}, {"Trees", &asked}, {"Offered", &found}},
         {uint32_t(trees.size())});
@@ -73,7 +73,7 @@ std::vector<shared::ShiftedPath> ShiftLab::shifted(const std::vector<shared::Off
     const gpu::Buffer from = upload("Paths", paths), to = upload("Destinations", destinations);
     const gpu::Buffer found =
         device_.createBuffer({.label = "ShiftedPaths", .size = paths.size() * sizeof(shared::ShiftedPath)});
-    run(kernels_ + "integrand_test",
+    run(kernels_ + "shift_test",
         {{"Surfaces", &surfaces_}, {"Paths", &from}, {"Destinations", &to}, {"ShiftedPaths", &found}},
         {uint32_t(paths.size())});
     return device_.queue().readAs<shared::ShiftedPath>(found);

@@ -28,7 +28,7 @@ class ShiftLab
 
     bool sees(uint32_t pixel) const { return seen_[pixel]; }
 
-    // By tree and leaf (SHIFT_LEAVES a tree): what each tree offers. A value that is not finite fails the test.
+    // By tree and path id (SHIFT_PATHS a tree): what each tree offers. A value that is not finite fails the test.
     std::vector<shared::OfferedPath> offered(const std::vector<shared::Tree>& trees);
 
     // Each path in the domain of its destination, a pixel.

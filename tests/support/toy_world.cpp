@@ -28,8 +28,8 @@ constexpr uint32_t NEIGHBORS = 2;                  // K
 constexpr uint32_t TILE = 4;                       // pixels
 constexpr glm::vec3 EMISSION(0.5f, 0.25f, 0.125f); // as in candidates.glsl
 
-// Colors of the leaves' cells: each channel is dark somewhere.
-const glm::vec4 CELLS[shared::TOY_LEAVES][shared::TOY_CELLS] = {
+// Colors of the paths' cells: each channel is dark somewhere.
+const glm::vec4 CELLS[shared::TOY_PATHS][shared::TOY_CELLS] = {
     {{1, 1, 1, 0}, {0, 1.2f, 0.8f, 0}, {1.1f, 0, 1, 0}, {0.9f, 0.8f, 0, 0}},
     {{0.8f, 1, 1.2f, 0}, {1, 1, 1, 0}, {1.5f, 0, 0, 0}, {0, 0.7f, 1.3f, 0}},
 };
@@ -67,11 +67,11 @@ glm::dvec3 integral(const ToyDomain& d)
     if (d.seen == 0) return glm::dvec3(0);
     const double low = d.occluder - shared::TOY_OCCLUDER_SIZE, high = d.occluder + shared::TOY_OCCLUDER_SIZE;
     glm::dvec3 sum(0);
-    for (const auto& leaf : CELLS)
+    for (const auto& path : CELLS)
         for (uint32_t i = 0; i < shared::TOY_CELLS; ++i) {
             const double from = double(i) / shared::TOY_CELLS, to = double(i + 1) / shared::TOY_CELLS;
             const double seen = integralOfEnding(from, std::min(to, low)) + integralOfEnding(std::max(from, high), to);
-            sum += glm::dvec3(d.albedo) * glm::dvec3(leaf[i]) * seen;
+            sum += glm::dvec3(d.albedo) * glm::dvec3(path[i]) * seen;
         }
     return sum;
 }

@@ -44,22 +44,21 @@ void drawReservoirs(const WindowState& state, const Shot& shot, uint32_t x, uint
     ImGui::Text("confidence %u frames", shot.reservoirs[pixel].confidence);
     if (!ImGui::BeginTable("reservoirs", 7, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) return;
     for (const char* title :
-         {"target", "sample: frame/pixel/leaf", "bounces", "p_hat", "weight sum", "W", "shifts failed"}) {
+         {"target", "sample: frame/pixel/path id", "bounces", "p_hat", "weight sum", "W", "shifts failed"}) {
         ImGui::TableNextColumn();
         ImGui::TextColored(colors::GRAY, "%s", title);
     }
     for (int c = 0; c < count; ++c) {
         const shared::Inspection& seen = shot.reservoirs[size_t(c) * pixels + pixel];
-        const uint32_t leaf = seen.leafAndJoint & 0xffff, joint = seen.leafAndJoint >> 16;
+        const uint32_t pathId = seen.pathIdAndReconnection & 0xffff, r = seen.pathIdAndReconnection >> 16;
         const bool holds = seen.weightSum > 0;
         const auto cell = [](const std::string& text) {
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(text.c_str());
         };
         cell(targetName(estimator.target[size_t(c)]));
-        cell(holds ? fmt::format("{}/{}/{}", seen.seedFrame, seen.seedPixel, leaf) : "none");
-        cell(holds ? fmt::format("{}{}", seen.lengthAndShifts & 0xffff,
-                                 joint > 0 ? fmt::format(", joins x{}", joint) : "")
+        cell(holds ? fmt::format("{}/{}/{}", seen.seedFrame, seen.seedPixel, pathId) : "none");
+        cell(holds ? fmt::format("{}{}", seen.lengthAndShifts & 0xffff, r > 0 ? fmt::format(", joins x{}", r) : "")
                    : "");
         cell(fmt::format("{:.4g}", seen.target));
         cell(fmt::format("{:.4g}", seen.weightSum));

@@ -110,7 +110,7 @@ TEST_F(ShaderFolder, TooManyStorageBuffersAreAnError)
             sum += fmt::format("value{} + ", i);
         }
         write("many.comp", "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
-                           "#include \"lib/table.glsl\"\nlayout(local_size_x = 1) in;\nTABLE(1, 0, Elements);\n" +
+                           "#include \"lib/lanes.glsl\"\nlayout(local_size_x = 1) in;\nTABLE(1, 0, Elements);\n" +
                                declarations + "void main() { value0 = " + sum + "FETCH(Elements, 0).x; }\n");
         try {
             device.createComputePipeline({.label = "many"});

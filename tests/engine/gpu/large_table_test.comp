@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Each invocation exchanges the two rows of its pair: first + i, and last - i.
-#include "lib/table.glsl"
+#include "lib/lanes.glsl"
 #include "shared/types.h"
 layout(local_size_x = 64) in;
 TABLE_INOUT(SET_PASS, 0, Rows);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // values[i] = values[i] * factor + OFFSET + first lane of the table's element i.
-#include "lib/table.glsl"
+#include "lib/lanes.glsl"
 #include "shared/types.h"
 layout(constant_id = 0) const uint OFFSET = 0;
 layout(constant_id = 1) const uint WORKGROUP = 64;

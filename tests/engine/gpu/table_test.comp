@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // found[i] = element indices[i] of the table.
-#include "lib/table.glsl"
+#include "lib/lanes.glsl"
 #include "shared/types.h"
 layout(local_size_x = 64) in;
 TABLE(SET_SCENE, 0, Elements);

@@ -5,7 +5,7 @@
 #include "shifts.h"
 layout(local_size_x = 64) in;
 layout(set = SET_PASS, binding = 1, std430) readonly buffer Trees { Tree trees[]; };
-layout(set = SET_PASS, binding = 2, std430) writeonly buffer Offered { OfferedPath offered[]; }; // SHIFT_LEAVES a tree
+layout(set = SET_PASS, binding = 2, std430) writeonly buffer Offered { OfferedPath offered[]; }; // SHIFT_PATHS a tree
 
 uvec4 replacedBlock(PathSeed seed, uint block, uvec2 key)
 {
@@ -21,20 +21,20 @@ uvec4 replacedBlock(PathSeed seed, uint block, uvec2 key)
 
 uint endingOf(PathSample y)
 {
-    if ((y.leaf & 1u) == BY_SCATTER) return lightJoint.hit.triangle == NO_HIT ? SKY_MET : LAMP_MET;
+    if (techniqueOf(y.pathId) == BY_SCATTER) return lightVertex.kept.triangle == NO_HIT ? SKY_MET : LAMP_MET;
     Surface anywhere; // the kind of light does not depend on it
     anywhere.position = vec3(0.0);
     anywhere.geometricNormal = vec3(0.0);
     anywhere.offset = 0.0;
-    LightSample light = sampleLight(pathRandom(y.seed, scatteringsOf(y.leaf), PURPOSE_LIGHT), anywhere);
+    LightSample light = sampleLight(pathRandom(y.seed, scatteringsOf(y.pathId), PURPOSE_LIGHT), anywhere);
     return light.dirac ? DIRAC_SAMPLED : light.infinite ? SKY_SAMPLED : LAMP_SAMPLED;
 }
 
 void offer(PathSample y, vec3 f, float density)
 {
     Reconnection r = y.reconnection;
-    offered[gl_GlobalInvocationID.x * SHIFT_LEAVES + y.leaf - makeLeaf(1u, BY_LIGHT)] =
-        OfferedPath(y.seed.frame, y.seed.pixel, y.leaf, y.joint, r.triangle, density, r.barycentric,
+    offered[gl_GlobalInvocationID.x * SHIFT_PATHS + y.pathId - makePathId(1u, BY_LIGHT)] =
+        OfferedPath(y.seed.frame, y.seed.pixel, y.pathId, y.reconnectionIndex, r.triangle, density, r.barycentric,
                     vec4(r.direction, r.lightPdf), vec4(r.suffix, float(endingOf(y))), vec4(f, 0.0));
 }
 

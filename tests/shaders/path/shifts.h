@@ -6,7 +6,7 @@
 
 SHARED_BEGIN
 
-SHARED_CONST uint SHIFT_LEAVES = 10u; // of a tree: leaves 2 to 11, that is up to five scattering events
+SHARED_CONST uint SHIFT_PATHS = 10u; // of a tree: ids 2 to 11, that is up to five scattering events
 
 // How a path found its light.
 SHARED_CONST uint DIRAC_SAMPLED = 0u;
@@ -29,8 +29,8 @@ struct Tree {
 struct OfferedPath {
     uint seedFrame;
     uint seedPixel;
-    uint leaf; // 0: there is no such path
-    uint joint;
+    uint pathId; // 0: there is no such path
+    uint reconnectionIndex;
     uint triangle;
     float density;
     vec2 barycentric;

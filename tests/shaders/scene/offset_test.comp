@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Rays that leave surface points: from the point of a triangle at given barycentrics, computed as surface.glsl does.
-#include "lib/table.glsl"
+#include "lib/lanes.glsl"
 #include "shared/types.h"
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,4 @@
-// In place of path/candidates.glsl: one path for each leaf of the toy.
+// In place of path/candidates.glsl: each path of the toy.
 #include "toy.glsl"
 
 const vec3 TOY_EMISSION = vec3(0.5, 0.25, 0.125);
@@ -10,14 +10,14 @@ bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission)
     emission = TOY_EMISSION;
     ToyDomain d = toyDomain(pixel.y * frame.width + pixel.x, false);
     if (d.seen == 0u) return false;
-    for (uint leaf = 0u; leaf < TOY_LEAVES; ++leaf) {
-        float x = drawn(d, seed, leaf);
-        vec3 h = value(d, x, suffixOf(leaf, x), ending(x));
+    for (uint pathId = 0u; pathId < TOY_PATHS; ++pathId) {
+        float x = drawn(d, seed, pathId);
+        vec3 h = value(d, x, suffixOf(pathId, x), ending(x));
         if (h == vec3(0.0)) continue;
         float p = density(d, x);
         bool kept = canBeKept(d, x);
-        offer(PathSample(seed, leaf, kept ? 2u : 0u,
-                         Reconnection(leaf, vec2(x, 0.0), ending(x), vec3(0.0, x, 0.0), suffixOf(leaf, x))),
+        offer(PathSample(seed, pathId, kept ? 2u : 0u,
+                         Reconnection(pathId, vec2(x, 0.0), ending(x), vec3(0.0, x, 0.0), suffixOf(pathId, x))),
               h / p, kept ? p : 1.0);
     }
     return true;

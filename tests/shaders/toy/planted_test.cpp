@@ -84,7 +84,7 @@ const ToyError ERRORS[] = {
      1024,
      passes::Method::RestirPt,
      passes::Color::Weighted},
-    {"ColorOfTheFirstLeafTwice",
+    {"ColorOfTheFirstPathTwice",
      Shift::Hybrid,
      {Temporal, true, 8},
      1024,
@@ -102,7 +102,7 @@ TEST_P(ToyPlantedErrors, AreFound)
     if (isSlow(device()) && error.name != std::string("MissingJacobian") && !std::getenv("TRICHROME_TEST_DRIVERS"))
         GTEST_SKIP() << "SKIPPED ON SwiftShader: takes minutes; TRICHROME_TEST_DRIVERS=1 asks for it";
     PlantedShaders shaders(std::string("toy_") + error.name);
-    for (const char* contract : {"integrand.glsl", "candidates.glsl", "toy.glsl", "toy.h"})
+    for (const char* contract : {"domain.glsl", "shift.glsl", "candidates.glsl", "toy.glsl", "toy.h"})
         std::filesystem::copy(std::filesystem::path(TRICHROME_SOURCE_DIR "/tests/shaders/toy") / contract,
                               shaders.folder() / "path" / contract, std::filesystem::copy_options::overwrite_existing);
     shaders.plant(plantedError(error.name));

@@ -1,76 +1,12 @@
-// What resampling knows of light transport: domains, and paths shifted between them. Tests put a closed-form integrand
-// of the same names in its place: Domain (of which stages read `seen`), makeDomain, alike, reproject, shiftInto,
-// countShifts.
-#ifndef SHADERS_PATH_INTEGRAND_GLSL
-#define SHADERS_PATH_INTEGRAND_GLSL
-
-#include "restir/reservoir.glsl"
+// The shift maps: random replay, reconnection, and hybrid, which does one after the other (reconnection.glsl). All reservoirs
+// whose samples have one seed are shifted in one walk: they share the prefix and whether the reconnection vertex is seen.
+#ifndef SHADERS_PATH_SHIFT_GLSL
+#define SHADERS_PATH_SHIFT_GLSL
 
 #define DEFERS_SHADOW_RAYS
-#include "lib/loop.glsl"
-#include "path/surfaces.glsl"
+#include "path/domain.glsl"
 #include "path/walk.glsl"
 
-// The integral of one pixel in one frame: what it sees, and from where.
-struct Domain {
-    bool seen; // else the primary ray left the scene, and there is nothing to integrate
-    uint triangle;
-    vec2 barycentric;
-    vec3 position;
-    vec3 normal; // geometric, on the camera's side
-    vec3 wo;
-    float footprint; // trunk.glsl
-};
-
-Domain makeDomain(uint pixel, bool previous)
-{
-    uvec4 hit = seenBy(pixel, previous);
-    Domain d;
-    d.seen = hit.x != NO_HIT;
-    if (!d.seen) return d;
-    d.triangle = hit.x;
-    d.barycentric = uintBitsToFloat(hit.yz);
-    TriangleGeometry g = loadTriangle(d.triangle);
-    d.position = pointOn(g, d.barycentric);
-    CameraUniform camera = frame.camera;
-    if (previous) camera = frame.previousCamera;
-    d.wo = towardsCamera(camera, d.position);
-    d.normal = normalize(g.areaNormal);
-    if (dot(d.normal, d.wo) < 0.0) d.normal = -d.normal;
-    d.footprint = footprintOf(camera, d.position, d.normal, d.wo);
-    return d;
-}
-
-// Are two domains near enough to each other that reuse pays? Asks the geometry only, never the samples: unbiased.
-bool alike(Domain a, Domain b)
-{
-    float distance = length(a.position - frame.camera.position.xyz);
-    return a.seen && b.seen && dot(a.normal, b.normal) > 0.9 &&
-           abs(dot(a.normal, b.position - a.position)) < 0.02 * (ORTHOGRAPHIC ? length(frame.camera.up.xyz) : distance);
-}
-
-// The pixel of the previous frame, of the same run, that saw the same point.
-bool reproject(Domain here, uint pixel, out uint previousPixel)
-{
-    previousPixel = pixel;
-    if (SAME_VIEW) return true;
-    vec3 d = here.position - frame.previousCamera.position.xyz;
-    float depth = ORTHOGRAPHIC ? 1.0 : dot(d, frame.previousCamera.forward.xyz);
-    if (depth <= 0.0) return false;
-    vec3 right = frame.previousCamera.right.xyz;
-    vec3 up = frame.previousCamera.up.xyz;
-    vec2 p = vec2(dot(d, right) / dot(right, right), dot(d, up) / dot(up, up)) / depth;
-    vec2 size = vec2(frame.width, frame.runHeight);
-    vec2 at = floor((p * vec2(0.5, -0.5) + 0.5) * size);
-    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) return false;
-    uint runTop = pixel / frame.width / frame.runHeight * frame.runHeight;
-    previousPixel = (runTop + uint(at.y)) * frame.width + uint(at.x);
-    return true;
-}
-
-// ----------------------------------------------------------------------------------------------------------- shift maps
-// All reservoirs whose samples have one seed are shifted in one walk: they share the trunk and the visibility of the
-// reconnection vertex.
 PathSample moving[MAX_RESERVOIRS];
 vec3 arrived[MAX_RESERVOIRS];
 uint outcome[MAX_RESERVOIRS]; // SHIFT_*
@@ -100,9 +36,8 @@ void tracePending()
     uint left = 0u;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) left |= pending[c].who != 0u ? 1u << c : 0u;
     LOOP_BEGIN(left != 0u)
-        Pending next = pending[0];
-        for (uint c = 1u; c < RESERVOIR_COUNT; ++c)
-            if (uint(findLSB(left)) == c) next = pending[c];
+        Pending next;
+        PICK(next, pending, RESERVOIR_COUNT, findLSB(left));
         bool blocked = left != 0u && isBlocked(next.ray);
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if (!blocked || (next.who & (1u << c)) == 0u) continue;
@@ -122,10 +57,11 @@ void settle(uint c, uint what, vec3 f)
     arrived[c] = f;
 }
 
-bool wants(uint leaf)
+bool wants(uint pathId)
 {
     bool wanted = false;
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) wanted = wanted || (isOpen(c) && moving[c].joint == 0u && moving[c].leaf == leaf);
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+        wanted = wanted || (isOpen(c) && moving[c].reconnectionIndex == 0u && moving[c].pathId == pathId);
     return wanted;
 }
 
@@ -134,38 +70,39 @@ bool goesOn(uint k)
     if (SHIFT_MAP == SHIFT_RECONNECTION) return false; // all is settled at x_1
     bool more = false;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        bool deeper = moving[c].joint == 0u ? moving[c].leaf > makeLeaf(k, BY_LIGHT) : moving[c].joint > k + 1u;
+        uint r = moving[c].reconnectionIndex;
+        bool deeper = r == 0u ? moving[c].pathId > makePathId(k, BY_LIGHT) : r > k + 1u;
         more = more || (isOpen(c) && deeper);
     }
     return more;
 }
 
-void emit(uint leaf, vec3 f, Ending e)
+void emit(uint pathId, vec3 f, Ending e)
 {
-    bool joinedEarlier = (leaf & 1u) == BY_SCATTER && lightJoint.joins;
+    bool joinedEarlier = techniqueOf(pathId) == BY_SCATTER && lightVertex.index != 0u;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        if (!isOpen(c) || moving[c].joint != 0u || moving[c].leaf != leaf) continue;
+        if (!isOpen(c) || moving[c].reconnectionIndex != 0u || moving[c].pathId != pathId) continue;
         settle(c, joinedEarlier ? SHIFT_JOINED_EARLIER : SHIFT_DONE, joinedEarlier ? vec3(0.0) : f);
     }
 }
 
-void emitUnlessBlocked(uint leaf, vec3 f, Ending e, ShadowRay ray)
+void emitUnlessBlocked(uint pathId, vec3 f, Ending e, ShadowRay ray)
 {
     uint before = open;
-    emit(leaf, f, e);
+    emit(pathId, f, e);
     waitFor(ray, before & ~open, SHIFT_ENDED);
 }
 
 // What follows x_r when it scatters on, of path y: the last factors of f(T Y). `at` is the scattering at x_r.
-vec3 afterJoint(PathSample y, Bsdf at)
+vec3 afterReconnection(PathSample y, Bsdf at)
 {
     Reconnection r = y.reconnection;
     float departure;
     vec3 f = evaluate(at, r.direction * at.frame, r.direction, departure);
     if (f == vec3(0.0)) return vec3(0.0);
     float weight = 1.0; // what is left of the MIS weight and depends on x_(r-1)
-    if (scatteringsOf(y.leaf) == y.joint) {
-        if ((y.leaf & 1u) == BY_SCATTER) weight = departure / (departure + r.lightPdf);
+    if (scatteringsOf(y.pathId) == y.reconnectionIndex) {
+        if (techniqueOf(y.pathId) == BY_SCATTER) weight = departure / (departure + r.lightPdf);
         else if (r.lightPdf >= 0.0) weight = 1.0 / (r.lightPdf + departure);
     }
     return f * r.suffix * weight;
@@ -178,7 +115,7 @@ void join(Vertex x)
     uint joined = 0u;
     Reconnection r;
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        if (!isOpen(c) || moving[c].joint != x.k + 1u) continue;
+        if (!isOpen(c) || moving[c].reconnectionIndex != x.k + 1u) continue;
         joining |= 1u << c;
         r = moving[c].reconnection; // paths of one seed and one r have the same x_r
     }
@@ -208,11 +145,11 @@ void join(Vertex x)
         vec3 prefix = x.throughput * f * geometry;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if ((joining & (1u << c)) == 0u) continue;
-            bool toLight = scatteringsOf(moving[c].leaf) == x.k;
+            bool toLight = scatteringsOf(moving[c].pathId) == x.k;
             bool joinable = toLight ? lightJoins : surfaceJoins;
             vec3 moved = vec3(0.0);
             if (joinable && scatters && (toLight || !endsHere))
-                moved = prefix * (toLight ? asLight : afterJoint(moving[c], onward));
+                moved = prefix * (toLight ? asLight : afterReconnection(moving[c], onward));
             settle(c, !joinable ? SHIFT_NOT_JOINABLE : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
             joined |= moved != vec3(0.0) ? 1u << c : 0u;
         }
@@ -227,7 +164,7 @@ void join(Vertex x)
 
 bool visit(Vertex x)
 {
-    if (trunk.joint != 0u) { // at x_k already: whatever is still under way reconnects later in its own domain
+    if (reconnectionVertex.index != 0u) { // at x_k already: whatever is still under way reconnects later in its own domain
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
             if (isOpen(c)) settle(c, SHIFT_JOINED_EARLIER, vec3(0.0));
         return false;
@@ -245,7 +182,8 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         moving[c] = r[c].chosen;
         if (!(r[c].weightSum > 0.0)) continue;
         // Reconnection alone moves paths that end on a sampled light at once, and those that reconnect at x_2.
-        if (SHIFT_MAP == SHIFT_RECONNECTION && moving[c].joint == 0u && moving[c].leaf != makeLeaf(1u, BY_LIGHT)) {
+        bool replays = moving[c].reconnectionIndex == 0u && moving[c].pathId != makePathId(1u, BY_LIGHT);
+        if (SHIFT_MAP == SHIFT_RECONNECTION && replays) {
             ++shiftOutcomes[SHIFT_NOT_JOINABLE];
             continue;
         }
@@ -261,9 +199,9 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
     Surface first = loadSurface(to.triangle, to.barycentric, to.wo); // x_1 of all groups
     Bsdf firstBsdf = makeBsdf(first, to.wo);
     LOOP_BEGIN(left != 0u)
-        groupSeed = moving[0].seed; // counting upwards: drivers unroll no other loop, and indexed arrays are memory
-        for (uint c = 1u; c < RESERVOIR_COUNT; ++c)
-            if (uint(findLSB(left)) == c) groupSeed = moving[c].seed;
+        PathSample next;
+        PICK(next, moving, RESERVOIR_COUNT, findLSB(left));
+        groupSeed = next.seed;
         uint group = 0u;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
             if ((left & (1u << c)) != 0u && moving[c].seed == groupSeed) group |= 1u << c;

@@ -13,11 +13,11 @@ layout(set = SET_PASS, binding = 3, std430) writeonly buffer ShiftedPaths { Shif
 #include "path/walk.glsl"
 #define visit shiftVisits // between the walk and the shift stand the functions below
 #define goesOn shiftGoesOn
-#include "integrand.glsl"
+#include "shift.glsl"
 #undef visit
 #undef goesOn
 
-uint joint; // of the path under way
+uint reconnectionIndex; // of the path under way
 Scattering before;
 
 Scattering scatteringAt(Surface s, Bsdf b)
@@ -29,10 +29,10 @@ Scattering scatteringAt(Surface s, Bsdf b)
 // The walk goes on to x_(r-1) also where the shift has found that it is not defined.
 bool visit(Vertex x)
 {
-    if (x.k + 1u == joint) before = scatteringAt(x.s, x.bsdf);
-    return shiftVisits(x) || x.k + 1u < joint;
+    if (x.k + 1u == reconnectionIndex) before = scatteringAt(x.s, x.bsdf);
+    return shiftVisits(x) || x.k + 1u < reconnectionIndex;
 }
-bool goesOn(uint k) { return shiftGoesOn(k) || k + 1u < joint; }
+bool goesOn(uint k) { return shiftGoesOn(k) || k + 1u < reconnectionIndex; }
 
 void main()
 {
@@ -40,12 +40,12 @@ void main()
     if (i >= uint(paths.length())) return;
     OfferedPath path = paths[i];
     const Scattering nowhere = Scattering(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    joint = path.joint;
+    reconnectionIndex = path.reconnectionIndex;
     before = nowhere;
 
     Reservoir r[MAX_RESERVOIRS];
     for (uint c = 0u; c < MAX_RESERVOIRS; ++c) r[c] = EMPTY;
-    r[0].chosen = PathSample(PathSeed(path.seedFrame, path.seedPixel), path.leaf, path.joint,
+    r[0].chosen = PathSample(PathSeed(path.seedFrame, path.seedPixel), path.pathId, path.reconnectionIndex,
                              Reconnection(path.triangle, path.barycentric, path.direction.w, path.direction.xyz, path.suffix.xyz));
     r[0].weightSum = 1.0;
     vec3 f[MAX_RESERVOIRS];
@@ -59,7 +59,7 @@ void main()
     result.before = before;
     result.at = nowhere;
     for (uint k = 0u; k < 3u; ++k) result.corners[k] = vec4(0.0);
-    if (joint != 0u && path.triangle != NO_HIT && before.position.w != 0.0) {
+    if (reconnectionIndex != 0u && path.triangle != NO_HIT && before.position.w != 0.0) {
         TriangleGeometry g = loadTriangle(path.triangle);
         result.corners[0].xyz = g.p0;
         result.corners[1].xyz = g.p1;

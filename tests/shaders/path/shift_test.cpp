@@ -83,12 +83,12 @@ void PrintTo(const ShiftError& error, std::ostream* os)
 const ShiftError ERRORS[] = {
     {"MissingCosine",
      {{"path/walk.glsl", "abs(dot(next.geometricNormal, wo)) / dot(d, d)", "1.0 / dot(d, d)"},
-      {"path/integrand.glsl", "abs(dot(at.geometricNormal, direction)) / squared", "1.0 / squared"}},
+      {"path/shift.glsl", "abs(dot(at.geometricNormal, direction)) / squared", "1.0 / squared"}},
      &ShiftFindings::jacobian},
     {"MissingDensity",
-     {{"path/trunk.glsl", "trunk.arrival * trunk.departure;", "trunk.arrival;"}},
+     {{"path/reconnection.glsl", "x.arrival * x.departure;", "x.arrival;"}},
      &ShiftFindings::jacobian},
-    {"JacobianTimes1_02", {{"path/integrand.glsl", "f * geometry;", "1.02 * f * geometry;"}}, &ShiftFindings::home},
+    {"JacobianTimes1_02", {{"path/shift.glsl", "f * geometry;", "1.02 * f * geometry;"}}, &ShiftFindings::home},
 };
 
 class ShiftErrors : public GpuTest, public testing::WithParamInterface<ShiftError>
@@ -100,7 +100,7 @@ TEST_P(ShiftErrors, AreFound)
     if (isSlow(device())) GTEST_SKIP() << "SKIPPED ON SwiftShader: takes minutes to compile there";
     const ShiftError& error = GetParam();
     PlantedShaders shaders(std::string("shift_") + error.name);
-    for (const char* file : {"shifts.h", "candidates_test.comp", "integrand_test.comp"})
+    for (const char* file : {"shifts.h", "candidates_test.comp", "shift_test.comp"})
         std::filesystem::copy(std::filesystem::path(TRICHROME_SOURCE_DIR "/tests/shaders/path") / file,
                               shaders.folder() / file);
     for (const ShiftError::Plant& plant : error.plants)

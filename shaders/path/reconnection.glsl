@@ -1,0 +1,106 @@
+// Where the paths of a tree can be reconnected, noted while it is walked, and what is needed for it.
+//
+// The reconnection vertex x_r of a path is the first x_r, r >= 2, such that x_(r-1) and x_r scatter widely and are far enough
+// apart. A shift replays the prefix x_2 .. x_(r-1), joins x_(r-1) to x_r and keeps the rest (Lin et al. 2022, section 5.3).
+// That is invertible only if the shifted path's first such vertex is x_r too, so both directions ask the same functions.
+//
+// Measure: primary sample space before x_r, area at x_r (solid angle for the environment), solid angle at x_r for x_(r+1)
+// when scattering found it, primary sample space after. Shifts preserve it, so |T'| = 1, and f(Y) of a reconnecting path
+// is its contribution in primary sample space times the densities p_(r-1) G (and p_r) that `arrival` and `departure` hold.
+#ifndef SHADERS_PATH_RECONNECTION_GLSL
+#define SHADERS_PATH_RECONNECTION_GLSL
+
+#include "path/hooks.glsl"
+
+// Hybrid: below this GGX alpha a lobe is replayed. Reconnection alone joins all but perfect mirrors.
+const float JOIN_ALPHA = SHIFT_MAP == SHIFT_HYBRID ? 0.04 : DIRAC_ALPHA;
+// Hybrid: x_(r-1) spreads its scattered rays around x_r over an area of 1 / arrival at least. Joined where it is smaller
+// than this, the footprint of the walk's domain, a path would change more by the shift than by being drawn anew (after Lin
+// et al. 2026, "ReSTIR PT Enhanced", section 4). Set before a walk begins.
+float footprint = 0.0;
+// Reconnection alone: nearer than this part of their coordinates vertices have no direction left between them.
+const float JOIN_DISTANCE = 9.5367431640625e-7; // 2^-20
+
+// A scattered ray, x_k -> x_(k+1).
+struct Segment {
+    Scatter scatter;
+    Hit hit;
+    float distance; // from where the ray departed; RAY_MAX: the environment
+    float arrival;  // p_k G: density over area at x_(k+1); over solid angle for the environment
+};
+
+struct ReconnectionVertex {
+    uint index;        // r; 0: there is none
+    float arrival;     // p_(r-1) G
+    float departure;   // p_r, of the walk's own direction
+    Reconnection kept; // its suffix: throughput of the scattering events after x_r
+};
+const ReconnectionVertex NO_VERTEX =
+    ReconnectionVertex(0u, 1.0, 1.0, Reconnection(NO_HIT, vec2(0.0), 0.0, vec3(0.0), vec3(1.0)));
+ReconnectionVertex reconnectionVertex; // of the walk so far
+ReconnectionVertex lightVertex;        // the light that the last scattered ray found, joinable itself or not
+
+// Depends on the material alone, so that it is the same from all directions.
+bool scattersWidely(Surface s)
+{
+    bool polished = s.specular > 0.0 || s.metallic > 0.0 || s.transmission > 0.0;
+    return !polished || s.alphaG >= JOIN_ALPHA;
+}
+
+// Can x_(r-1) on `before` be joined to light at `position`? To a surface there, if it scatters widely, too. `arrival`: p_(r-1) G.
+bool joinsLight(uint r, Surface before, vec3 position, float distance, float arrival)
+{
+    if (SHIFT_MAP == SHIFT_REPLAY || (SHIFT_MAP == SHIFT_RECONNECTION && r != 2u)) return false;
+    if (!scattersWidely(before)) return false;
+    if (distance == RAY_MAX) return true; // the environment
+    if (SHIFT_MAP == SHIFT_HYBRID) return arrival * footprint <= 1.0;
+    return distance > JOIN_DISTANCE * maxComponent(max(abs(before.position), abs(position)));
+}
+
+void noteArrival(Vertex before, Segment to, Surface at)
+{
+    uint r = before.k + 1u;
+    if (reconnectionVertex.index != 0u || !joinsLight(r, before.s, at.position, to.distance, to.arrival)) return;
+    if (!scattersWidely(at)) return;
+    reconnectionVertex.index = r;
+    reconnectionVertex.arrival = to.arrival;
+    reconnectionVertex.kept.triangle = to.hit.triangle;
+    reconnectionVertex.kept.barycentric = to.hit.barycentric;
+}
+
+void noteDeparture(Vertex x, Scatter scatter)
+{
+    if (SHIFT_MAP == SHIFT_REPLAY || reconnectionVertex.index == 0u) return;
+    if (reconnectionVertex.index == x.k) {
+        reconnectionVertex.departure = scatter.pdf;
+        reconnectionVertex.kept.direction = scatter.direction;
+    } else {
+        reconnectionVertex.kept.suffix *= scatter.weight;
+    }
+}
+
+void noteLight(Vertex x, Segment to, vec3 position)
+{
+    bool joins = reconnectionVertex.index == 0u && joinsLight(x.k + 1u, x.s, position, to.distance, to.arrival);
+    lightVertex = NO_VERTEX;
+    lightVertex.index = joins ? x.k + 1u : 0u;
+    lightVertex.arrival = joins ? to.arrival : 1.0;
+    lightVertex.kept = Reconnection(to.hit.triangle, to.hit.barycentric, 0.0, to.scatter.direction, vec3(1.0));
+}
+
+// The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).
+PathSample sampleOf(PathSeed seed, uint pathId, Ending e, out float density)
+{
+    density = 1.0;
+    if (SHIFT_MAP == SHIFT_REPLAY) return PathSample(seed, pathId, 0u, NO_VERTEX.kept);
+    bool byLight = techniqueOf(pathId) == BY_LIGHT;
+    ReconnectionVertex x = reconnectionVertex;
+    if (x.index == 0u && !byLight) x = lightVertex;
+    bool last = x.index == scatteringsOf(pathId); // what follows x_r is light
+    density = last && byLight ? x.arrival : x.arrival * x.departure;
+    x.kept.suffix *= e.weighted;
+    if (last) x.kept = Reconnection(x.kept.triangle, x.kept.barycentric, e.lightPdf, e.direction, e.radiance);
+    return PathSample(seed, pathId, x.index, x.kept);
+}
+
+#endif

@@ -1,0 +1,23 @@
+// In place of path/domain.glsl: the toy's domains.
+#include "toy.glsl"
+
+struct Domain {
+    bool seen;
+    ToyDomain toy;
+};
+
+Domain makeDomain(uint pixel, bool previous)
+{
+    ToyDomain toy = toyDomain(pixel, previous);
+    return Domain(toy.seen != 0u, toy);
+}
+
+bool alike(Domain a, Domain b) { return a.seen && b.seen && abs(a.toy.likeness - b.toy.likeness) < 0.3; }
+
+bool reproject(Domain here, uint pixel, out uint previousPixel)
+{
+    previousPixel = pixel;
+    if (SAME_VIEW) return true;
+    previousPixel = pixel / runPixels() * runPixels() + here.toy.previousPixel;
+    return here.toy.previousPixel != NO_NEIGHBOR;
+}
