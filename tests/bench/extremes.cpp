@@ -10,12 +10,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/csv.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/bench/extreme_cases.h"
-#include "ui/report/csv.h"
 #include "ui/report/page.h"
 
 namespace
@@ -200,7 +200,7 @@ void write(const std::filesystem::path& file, const std::string& text)
 void report(const std::filesystem::path& folder, const std::vector<Row>& rows, const gpu::Adapter& adapter)
 {
     const std::vector<std::vector<std::string>> table = tableOf(rows);
-    ui::Csv csv(header());
+    Csv csv(header());
     size_t unsound = 0;
     double worst = 0;
     for (const std::vector<std::string>& line : table) csv.row(line);

@@ -1,6 +1,7 @@
 // correlate SCENE -o DIR: the paper's experiment, how strongly frames of temporal reuse depend on each other.
 
-#include "passes/autocovariance.h"
+#include "passes/experiments/autocovariance.h"
+#include "passes/experiments/correlation_store.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
 #include "ui/cli/method_list.h"
@@ -14,7 +15,6 @@
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 #include "ui/report/correlation_page.h"
-#include "ui/report/correlation_store.h"
 
 #include <algorithm>
 #include <chrono>
@@ -61,17 +61,17 @@ struct CorrelateCommand {
     SettingsOptions settings{protocol()};
 
     passes::Settings readSettings() const;
-    std::vector<NamedMethod> readMethods(const passes::Settings& base) const;
-    std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const;
+    std::vector<passes::NamedMethod> readMethods(const passes::Settings& base) const;
+    std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<passes::NamedMethod>& list) const;
     int run() const;
 };
 
-uint32_t lastFrame(const NamedMethod& method)
+uint32_t lastFrame(const passes::NamedMethod& method)
 {
     return std::min(method.settings.frames, method.settings.maxConfidence);
 }
 
-uint32_t lawFrames(const NamedMethod& method)
+uint32_t lawFrames(const passes::NamedMethod& method)
 {
     return std::max(MIN_LAW_FRAMES, lastFrame(method) / LAW_SHARE);
 }
@@ -96,18 +96,19 @@ class Correlator
     bool sameView() const { return !cameraAt_ && emitters_->scene().viewRepeats(plain_); }
 
     // The law of plain frames, as many as the longest law of a method has.
-    CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
+    passes::CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
     {
-        CorrelationBatch result{.method = PATH_TRACER, .index = index, .runs = runs};
-        passes::Renderer& renderer = rendererOf(PATH_TRACER, plain_, runs);
+        passes::CorrelationBatch result{.method = passes::PATH_TRACER, .index = index, .runs = runs};
+        passes::Renderer& renderer = rendererOf(passes::PATH_TRACER, plain_, runs);
         result.law = law(renderer, plain_, index, frames, tick);
         result.nonFinite = nonFinite(renderer);
         return result;
     }
 
-    CorrelationBatch measure(const NamedMethod& method, uint32_t index, uint32_t runs, const passes::Tick& tick)
+    passes::CorrelationBatch measure(const passes::NamedMethod& method, uint32_t index, uint32_t runs,
+                                     const passes::Tick& tick)
     {
-        CorrelationBatch result{.method = method.name, .index = index, .runs = runs};
+        passes::CorrelationBatch result{.method = method.name, .index = index, .runs = runs};
         passes::Renderer& renderer = rendererOf(method.name, method.settings, runs);
         if (needsLaw(method)) {
             result.law = law(renderer, method.settings, index, lawFrames(method), tick);
@@ -123,13 +124,13 @@ class Correlator
     }
 
     // How many frames `measure` renders.
-    uint64_t cost(const NamedMethod& method) const
+    uint64_t cost(const passes::NamedMethod& method) const
     {
         return lastFrame(method) + (needsLaw(method) ? lawFrames(method) : 0);
     }
 
   private:
-    bool needsLaw(const NamedMethod& method) const
+    bool needsLaw(const passes::NamedMethod& method) const
     {
         return passes::lawHolds(method.settings, sameView()) && !passes::accumulates(method.settings.method);
     }
@@ -177,10 +178,10 @@ passes::Settings CorrelateCommand::readSettings() const
     return base;
 }
 
-std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
+std::vector<passes::NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
 {
-    std::vector<NamedMethod> list = methods.read(base);
-    for (const NamedMethod& method : list) {
+    std::vector<passes::NamedMethod> list = methods.read(base);
+    for (const passes::NamedMethod& method : list) {
         if (method.settings.method == passes::Method::Pt)
             throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);
         if (lastFrame(method) < 2)
@@ -192,10 +193,12 @@ std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& b
 
 // Runs of each batch: --batch or what the device can bind, and what is left in the last. The same on all ranks, however
 // many there are; and with more --runs the full batches stay what they were.
-std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const
+std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu,
+                                                 const std::vector<passes::NamedMethod>& list) const
 {
     uint32_t most = batch;
-    for (const NamedMethod& method : list) most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
+    for (const passes::NamedMethod& method : list)
+        most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
     std::vector<uint32_t> sizes;
     for (uint32_t left = runs; most >= MIN_BATCH && left > 0; left -= sizes.back())
         sizes.push_back(std::min(left, most));
@@ -215,7 +218,7 @@ std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const s
 int CorrelateCommand::run() const
 {
     const passes::Settings base = readSettings();
-    const std::vector<NamedMethod> list = readMethods(base);
+    const std::vector<passes::NamedMethod> list = readMethods(base);
     NamedFiles files;
     for (const char* file : {"index.html", "correlate.csv", "settings.json"})
         files.writes("--output", std::filesystem::path(output) / file);
@@ -232,37 +235,38 @@ int CorrelateCommand::run() const
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
     for (const auto& fact : motion.toText()) facts.push_back(fact);
-    for (const NamedMethod& method : list) facts.emplace_back("method " + method.name, passes::hash(method.settings));
+    for (const passes::NamedMethod& method : list)
+        facts.emplace_back("method " + method.name, passes::hash(method.settings));
     const scene::Scene world = openScene(scene, base, progress);
     const passes::CameraAt cameraAt = motion.read(world, base);
 
-    const CorrelationStore store(output);
+    const passes::CorrelationStore store(output);
     if (processes.index() == 0) store.open(facts, resume);
     processes.barrier();
     if (processes.index() > 0) store.open(facts, true); // where directories are not shared, each has its own
     facts.emplace_back("runs", std::to_string(runs));   // a batch is the same however many there are
     facts.emplace_back("batches", std::to_string(sizes.size()));
-    std::vector<CorrelationBatch> batches = store.load(sizes);
+    std::vector<passes::CorrelationBatch> batches = store.load(sizes);
 
     // What this process has to do: items in the order of batches, dealt out in turns.
     struct Item {
         uint32_t index;
-        const NamedMethod* method; // null: the path tracer
+        const passes::NamedMethod* method; // null: the path tracer
     };
     Correlator correlator(gpu, world, base, cameraAt,
                           [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
     progress.clear();
     uint32_t plainFrames = 0;
-    for (const NamedMethod& method : list) plainFrames = std::max(plainFrames, lawFrames(method));
+    for (const passes::NamedMethod& method : list) plainFrames = std::max(plainFrames, lawFrames(method));
     const auto cost = [&](const Item& item) { return item.method ? correlator.cost(*item.method) : plainFrames; };
     std::vector<Item> items;
     uint64_t turn = 0, frames = 0;
     for (uint32_t index = 0; index < sizes.size(); ++index)
         for (size_t m = 0; m <= list.size(); ++m) {
             const Item item{index, m == 0 ? nullptr : &list[m - 1]};
-            const std::string name = item.method ? item.method->name : PATH_TRACER;
+            const std::string name = item.method ? item.method->name : passes::PATH_TRACER;
             const bool done = std::ranges::any_of(
-                batches, [&](const CorrelationBatch& b) { return b.index == index && b.method == name; });
+                batches, [&](const passes::CorrelationBatch& b) { return b.index == index && b.method == name; });
             if (turn++ % processes.count() != processes.index() || done) continue;
             items.push_back(item);
             frames += cost(item);
@@ -286,16 +290,16 @@ int CorrelateCommand::run() const
     progress.clear();
 
     std::vector<Bytes> records;
-    for (const CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
-    Correlation correlation{.scene = scene.name,
-                            .moving = bool(cameraAt),
-                            .sameView = correlator.sameView(),
-                            .partial = interrupt.requested(),
-                            .width = base.width,
-                            .height = base.height,
-                            .runs = runs};
+    for (const passes::CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
+    passes::Correlation correlation{.scene = scene.name,
+                                    .moving = bool(cameraAt),
+                                    .sameView = correlator.sameView(),
+                                    .partial = interrupt.requested(),
+                                    .width = base.width,
+                                    .height = base.height,
+                                    .runs = runs};
     batches.clear();
-    for (const Bytes& record : processes.gather(records)) batches.push_back(fromBytes(record));
+    for (const Bytes& record : processes.gather(records)) batches.push_back(passes::fromBytes(record));
     if (processes.index() > 0) return correlation.partial ? Interrupt::exitCode() : 0;
     evaluate(correlation, list, std::move(batches));
     std::string command = commandLine();

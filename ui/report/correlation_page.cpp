@@ -16,6 +16,9 @@ namespace ui
 namespace
 {
 
+using passes::Correlation;
+using passes::Curve;
+using passes::CurvePoint;
 using statistics::Estimate;
 
 constexpr uint32_t MAP_WIDTH = 480; // pixels on the page, at least

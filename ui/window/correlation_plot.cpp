@@ -1,6 +1,6 @@
 #include "ui/window/plots.h"
 
-#include "passes/autocovariance.h"
+#include "passes/experiments/autocovariance.h"
 #include "ui/window/axes.h"
 
 namespace ui

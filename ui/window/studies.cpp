@@ -1,8 +1,8 @@
 #include "ui/window/studies.h"
 
-#include "passes/autocovariance.h"
 #include "passes/camera_choice.h"
-#include "passes/reference.h"
+#include "passes/experiments/autocovariance.h"
+#include "passes/experiments/reference.h"
 
 namespace ui
 {

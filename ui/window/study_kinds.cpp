@@ -2,8 +2,8 @@
 
 #include "ui/window/studies.h"
 
-#include "passes/autocovariance.h"
-#include "passes/reference.h"
+#include "passes/experiments/autocovariance.h"
+#include "passes/experiments/reference.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "ui/report/correlation.h"
+#include "passes/experiments/correlation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <tuple>
 
-#include "ui/report/csv.h"
+#include "engine/base/csv.h"
 
-namespace ui
+namespace passes
 {
 
 namespace
@@ -18,8 +18,7 @@ constexpr double NO_VALUE = std::numeric_limits<double>::quiet_NaN();
 
 using Batches = std::vector<CorrelationBatch>;
 
-statistics::Estimate laws(const Batches& batches,
-                          const std::function<statistics::BatchValue(const passes::FrameLaw&)>& of)
+statistics::Estimate laws(const Batches& batches, const std::function<statistics::BatchValue(const FrameLaw&)>& of)
 {
     std::vector<statistics::BatchValue> values;
     for (const CorrelationBatch& batch : batches) values.push_back(of(*batch.law));
@@ -34,7 +33,7 @@ Batches withLaw(const Batches& batches, const std::string& method)
     return list;
 }
 
-std::vector<glm::dvec3> meanOver(const Batches& batches, std::vector<glm::dvec3> passes::FrameLaw::*field)
+std::vector<glm::dvec3> meanOver(const Batches& batches, std::vector<glm::dvec3> FrameLaw::*field)
 {
     std::vector<glm::dvec3> mean(((*batches.front().law).*field).size());
     uint32_t runs = 0;
@@ -61,7 +60,7 @@ CurvePoint pointAt(uint32_t frame, const Batches& batches, const std::string& me
     std::vector<statistics::BatchValue> autocovariances, variances;
     for (const CorrelationBatch& batch : batches) {
         if (batch.method != method) continue;
-        for (const passes::ChainPoint& own : batch.points) {
+        for (const ChainPoint& own : batch.points) {
             if (own.frame != frame) continue;
             autocovariances.push_back(own.autocovariance);
             variances.push_back(own.variance);
@@ -93,23 +92,23 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
 
     for (const CorrelationBatch& batch : batches) correlation.nonFinite += batch.nonFinite;
     const Batches plain = withLaw(batches, PATH_TRACER);
-    if (!plain.empty()) correlation.sigma2 = laws(plain, [](const passes::FrameLaw& law) { return law.variance; });
+    if (!plain.empty()) correlation.sigma2 = laws(plain, [](const FrameLaw& law) { return law.variance; });
     for (const NamedMethod& method : methods) {
         Curve curve{.method = method};
-        const bool known = passes::lawHolds(method.settings, correlation.sameView);
-        const Batches own = passes::accumulates(method.settings.method) ? plain : withLaw(batches, method.name);
+        const bool known = lawHolds(method.settings, correlation.sameView);
+        const Batches own = accumulates(method.settings.method) ? plain : withLaw(batches, method.name);
         if (!own.empty() && known) {
-            curve.plateau = laws(own, [](const passes::FrameLaw& law) { return law.plateau; });
-            curve.floor = meanOver(own, &passes::FrameLaw::floor);
-            curve.mean = meanOver(own, &passes::FrameLaw::mean);
+            curve.plateau = laws(own, [](const FrameLaw& law) { return law.plateau; });
+            curve.floor = meanOver(own, &FrameLaw::floor);
+            curve.mean = meanOver(own, &FrameLaw::mean);
         }
         for (const uint32_t frame : framesUpTo(method.settings.maxConfidence)) {
             CurvePoint point = pointAt(frame, batches, method.name);
-            const passes::Color color = method.settings.color;
-            const Batches& single = frame == 2 && color == passes::Color::Weighted ? plain : own;
+            const Color color = method.settings.color;
+            const Batches& single = frame == 2 && color == Color::Weighted ? plain : own;
             if (!single.empty() && known)
-                point.law = laws(
-                    single, [&](const passes::FrameLaw& law) { return predictedAutocovariance(law, color, frame); });
+                point.law =
+                    laws(single, [&](const FrameLaw& law) { return predictedAutocovariance(law, color, frame); });
             if (point.runs > 0 || point.law) curve.points.push_back(point);
         }
         correlation.curves.push_back(std::move(curve));
@@ -133,7 +132,7 @@ std::string csvOf(const Correlation& correlation)
              "predicted", "sigma2", "plateau", "standard_error", "predicted_error", "z", "variance"});
     for (const Curve& curve : correlation.curves) {
         std::string shift;
-        for (const auto& [name, value] : passes::toText(curve.method.settings))
+        for (const auto& [name, value] : toText(curve.method.settings))
             if (name == "shift") shift = value;
         const auto meanOf = [](const std::optional<statistics::Estimate>& e) {
             return csvNumber(e ? e->mean : NO_VALUE);
@@ -153,4 +152,4 @@ std::string csvOf(const Correlation& correlation)
     return csv.text();
 }
 
-} // namespace ui
+} // namespace passes

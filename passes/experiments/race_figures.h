@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/convergence.h"
-#include "passes/race.h"
+#include "passes/experiments/race.h"
 
 namespace passes
 {

@@ -7,7 +7,7 @@
 
 #include "engine/image/metrics.h"
 #include "passes/camera_path.h"
-#include "passes/reference.h"
+#include "passes/experiments/reference.h"
 #include "passes/renderer.h"
 
 namespace passes

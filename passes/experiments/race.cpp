@@ -1,4 +1,4 @@
-#include "passes/race.h"
+#include "passes/experiments/race.h"
 
 #include "engine/base/check.h"
 

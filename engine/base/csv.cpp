@@ -1,9 +1,6 @@
-#include "ui/report/csv.h"
+#include "engine/base/csv.h"
 
 #include "engine/base/check.h"
-
-namespace ui
-{
 
 Csv::Csv(const std::vector<std::string>& columns) : columnCount_(columns.size())
 {
@@ -35,5 +32,3 @@ std::string csvNumber(double value)
 {
     return fmt::format("{}", value); // the shortest that reads back exactly
 }
-
-} // namespace ui

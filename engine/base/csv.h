@@ -4,9 +4,6 @@
 #include <string>
 #include <vector>
 
-namespace ui
-{
-
 class Csv
 {
   public:
@@ -24,5 +21,3 @@ class Csv
 
 // Reads back exactly; "nan" and "inf" where there is no number.
 std::string csvNumber(double value);
-
-} // namespace ui

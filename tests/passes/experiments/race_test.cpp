@@ -1,6 +1,6 @@
 // Methods in turns, references and their cache: on a scene of a few pixels.
 
-#include "passes/race.h"
+#include "passes/experiments/race.h"
 
 #include <cmath>
 #include <fstream>

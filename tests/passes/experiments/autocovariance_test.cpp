@@ -1,6 +1,6 @@
 // The law of temporal reuse, as `correlate` measures it: chains against their closed form, one run for all caps.
 
-#include "passes/autocovariance.h"
+#include "passes/experiments/autocovariance.h"
 
 #include <cmath>
 #include <stdexcept>

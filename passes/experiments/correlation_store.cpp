@@ -1,16 +1,15 @@
-#include "ui/report/correlation_store.h"
+#include "passes/experiments/correlation_store.h"
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "engine/base/shown.h"
-#include "ui/cli/output_file.h"
 
 #include <cstring>
 
 #include <nlohmann/json.hpp>
 
-namespace ui
+namespace passes
 {
 
 namespace
@@ -21,7 +20,7 @@ constexpr const char* EXTENSION = ".cbor";
 
 // Throws Error unless the bytes are CBOR as we write it: the parser recurses, so nesting is bounded, and what else
 // makes it recurse (tags, strings in pieces) is refused.
-void checkCbor(const Bytes& bytes)
+void checkCbor(std::span<const std::byte> bytes)
 {
     constexpr size_t MAX_DEPTH = 16;
     std::vector<uint64_t> open = {1}; // items to come, of each array or object that is not complete
@@ -73,7 +72,7 @@ std::vector<glm::dvec3> pictureOf(const Json& json)
 
 } // namespace
 
-Bytes toBytes(const CorrelationBatch& batch)
+std::vector<std::byte> toBytes(const CorrelationBatch& batch)
 {
     Json json = {{"method", batch.method}, {"index", batch.index},    {"runs", batch.runs},
                  {"law", nullptr},         {"points", Json::array()}, {"nonfinite", batch.nonFinite}};
@@ -82,7 +81,7 @@ Bytes toBytes(const CorrelationBatch& batch)
                        {"plateau", toJson(batch.law->plateau)},
                        {"floor", toJson(batch.law->floor)},
                        {"mean", toJson(batch.law->mean)}};
-    for (const passes::ChainPoint& point : batch.points)
+    for (const ChainPoint& point : batch.points)
         json["points"].push_back({{"frame", point.frame},
                                   {"pixels", point.pixels},
                                   {"autocovariance", toJson(point.autocovariance)},
@@ -92,7 +91,7 @@ Bytes toBytes(const CorrelationBatch& batch)
     return {bytes.begin(), bytes.end()};
 }
 
-CorrelationBatch fromBytes(const Bytes& bytes)
+CorrelationBatch fromBytes(std::span<const std::byte> bytes)
 {
     checkCbor(bytes);
     try {
@@ -128,7 +127,8 @@ void CorrelationStore::open(const std::vector<std::pair<std::string, std::string
         std::filesystem::create_directories(path_, ignored);
         if (!std::filesystem::is_directory(path_, ignored))
             throw Error("Cannot make the directory \"{}\".", path_.string());
-        writeText(file, jsonText(wanted, 2) + "\n");
+        const std::string text = jsonText(wanted, 2) + "\n";
+        files::writeAtomically(file, std::as_bytes(std::span(text)));
         return;
     }
     const std::string directory = path_.parent_path().string();
@@ -164,4 +164,4 @@ std::vector<CorrelationBatch> CorrelationStore::load(std::span<const uint32_t> r
     return batches;
 }
 
-} // namespace ui
+} // namespace passes

@@ -7,15 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "ui/cli/ranks.h"
-#include "ui/report/correlation.h"
+#include "passes/experiments/correlation.h"
 
-namespace ui
+namespace passes
 {
 
 // CBOR (RFC 8949); every number comes back exactly. Throws Error: not such bytes.
-Bytes toBytes(const CorrelationBatch& batch);
-CorrelationBatch fromBytes(const Bytes& bytes);
+std::vector<std::byte> toBytes(const CorrelationBatch& batch);
+CorrelationBatch fromBytes(std::span<const std::byte> bytes);
 
 // DIR/batches: settings.json and the batches that were measured with them.
 class CorrelationStore
@@ -35,4 +34,4 @@ class CorrelationStore
     std::filesystem::path path_;
 };
 
-} // namespace ui
+} // namespace passes

@@ -1,14 +1,13 @@
-#include "ui/report/race_store.h"
+#include "passes/experiments/race_store.h"
 
+#include "engine/base/csv.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/json.h"
-#include "ui/cli/output_file.h"
-#include "ui/report/csv.h"
 
 #include <nlohmann/json.hpp>
 
-namespace ui
+namespace passes
 {
 
 namespace
@@ -35,16 +34,16 @@ void visitFigures(AnySample& s, Visitor&& visit)
         visit(*figure);
 }
 
-Json jsonOf(const passes::Sample& sample)
+Json jsonOf(const Sample& sample)
 {
     Json row = {sample.method, sample.average, sample.frames};
     visitFigures(sample, [&](double value) { row.push_back(csvNumber(value)); }); // JSON has no nan
     return row;
 }
 
-passes::Sample sampleOf(const Json& row, size_t methods)
+Sample sampleOf(const Json& row, size_t methods)
 {
-    passes::Sample sample{
+    Sample sample{
         .method = row.at(0).get<uint32_t>(), .average = row.at(1).get<bool>(), .frames = row.at(2).get<uint64_t>()};
     if (sample.method >= methods) throw Error("It names a method {} of {}.", sample.method, methods);
     size_t column = 3;
@@ -80,7 +79,7 @@ void RaceStore::requireNew() const
                     directory_.string());
 }
 
-void RaceStore::write(size_t index, const passes::Repeat& repeat) const
+void RaceStore::write(size_t index, const Repeat& repeat) const
 {
     if (index == 0) {
         createDirectory(directory_ / "pictures");
@@ -89,13 +88,14 @@ void RaceStore::write(size_t index, const passes::Repeat& repeat) const
     }
     createDirectory(directory_ / "repeats");
     Json json = {{"key", key_}, {"repeat", index}, {"nonfinite", repeat.nonFinite}, {"samples", Json::array()}};
-    for (const passes::Sample& sample : repeat.samples) json["samples"].push_back(jsonOf(sample));
-    writeText(file(index), jsonText(json) + "\n");
+    for (const Sample& sample : repeat.samples) json["samples"].push_back(jsonOf(sample));
+    const std::string text = jsonText(json) + "\n";
+    files::writeAtomically(file(index), std::as_bytes(std::span(text)));
 }
 
-std::vector<passes::Repeat> RaceStore::read(size_t limit) const
+std::vector<Repeat> RaceStore::read(size_t limit) const
 {
-    std::vector<passes::Repeat> repeats;
+    std::vector<Repeat> repeats;
     for (size_t index = 0; index < limit && std::filesystem::exists(file(index)); ++index) {
         const std::string name = file(index).string();
         const std::vector<std::byte> bytes = files::read(file(index), MAX_FILE_BYTES);
@@ -104,7 +104,7 @@ std::vector<passes::Repeat> RaceStore::read(size_t limit) const
             if (json.at("key").get<std::string>() != key_)
                 throw Error("Cannot resume: \"{}\" holds a run of other settings, another scene, device or version.",
                             directory_.string());
-            passes::Repeat repeat{.nonFinite = json.at("nonfinite").get<uint64_t>(), .complete = true};
+            Repeat repeat{.nonFinite = json.at("nonfinite").get<uint64_t>(), .complete = true};
             for (const Json& row : json.at("samples")) repeat.samples.push_back(sampleOf(row, names_.size()));
             repeats.push_back(std::move(repeat));
         } catch (const nlohmann::json::exception& error) {
@@ -116,4 +116,4 @@ std::vector<passes::Repeat> RaceStore::read(size_t limit) const
     return repeats;
 }
 
-} // namespace ui
+} // namespace passes

@@ -1,4 +1,4 @@
-#include "passes/autocovariance.h"
+#include "passes/experiments/autocovariance.h"
 
 #include "engine/base/check.h"
 #include "passes/estimator.h"

@@ -1,4 +1,4 @@
-#include "passes/race_figures.h"
+#include "passes/experiments/race_figures.h"
 
 #include <algorithm>
 #include <cmath>

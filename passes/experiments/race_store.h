@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "passes/race.h"
+#include "passes/experiments/race.h"
 
-namespace ui
+namespace passes
 {
 
 class RaceStore
@@ -18,9 +18,9 @@ class RaceStore
 
     void requireNew() const; // Throws Error: there are repeats, which may have taken hours
     // Whole or not at all; the pictures of the first repeat beside it. Throws Error.
-    void write(size_t index, const passes::Repeat& repeat) const;
+    void write(size_t index, const Repeat& repeat) const;
     // Those that are there, without gaps, at most `limit`. Throws Error: of another key, or damaged.
-    std::vector<passes::Repeat> read(size_t limit) const;
+    std::vector<Repeat> read(size_t limit) const;
 
     std::filesystem::path picture(size_t method) const;
 
@@ -32,4 +32,4 @@ class RaceStore
     std::vector<std::string> names_;
 };
 
-} // namespace ui
+} // namespace passes

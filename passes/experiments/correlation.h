@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "engine/base/batches.h"
-#include "passes/autocovariance.h"
-#include "ui/cli/method_list.h"
+#include "passes/experiments/autocovariance.h"
+#include "passes/experiments/named_method.h"
 
-namespace ui
+namespace passes
 {
 
 // One batch of runs of one method: the law of its single frames where it was asked for, and its chain.
@@ -18,8 +18,8 @@ struct CorrelationBatch {
     std::string method; // NamedMethod::name; PATH_TRACER: the law of plain frames, without a chain
     uint32_t index = 0;
     uint32_t runs = 0;
-    std::optional<passes::FrameLaw> law;
-    std::vector<passes::ChainPoint> points;
+    std::optional<FrameLaw> law;
+    std::vector<ChainPoint> points;
     uint64_t nonFinite = 0; // values found not finite and counted as 0
     bool operator==(const CorrelationBatch&) const = default;
 };
@@ -62,4 +62,4 @@ std::optional<statistics::Interval> crossover(const Correlation& correlation, co
 
 std::string csvOf(const Correlation& correlation);
 
-} // namespace ui
+} // namespace passes

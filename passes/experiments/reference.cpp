@@ -1,4 +1,4 @@
-#include "passes/reference.h"
+#include "passes/experiments/reference.h"
 
 #include "engine/base/error.h"
 #include "engine/base/fingerprint.h"
