@@ -42,6 +42,21 @@ ChainPoint pointOf(uint32_t frame, const std::vector<glm::vec3>& before, const s
             .variance = statistics::meanCovariance(channels(now), channels(now), runs)};
 }
 
+// For the path tracer, each channel itself.
+std::array<glm::vec3, 3> resolvingTargets(Method method)
+{
+    std::array<glm::vec3, 3> targets = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)};
+    if (method == Method::Pt) return targets;
+    const Estimator& estimator = estimatorOf(method);
+    for (int c = 0; c < 3; ++c)
+        for (size_t r = 0; r < estimator.target.size(); ++r) {
+            if (estimator.resolve[r][c] == 0) continue;
+            CHECK_EQ(estimator.resolve[r][c], 1.0f); // one reservoir a channel: the law knows no mixtures
+            targets[size_t(c)] = estimator.target[r];
+        }
+    return targets;
+}
+
 // What fp32 cannot tell from the emission in emission + light is no light.
 constexpr double RESOLUTION = 4 * 5.96e-8;
 
@@ -75,16 +90,6 @@ void Chain::step()
     if (!here.empty()) points_.push_back(pointOf(frame_, gather(before_, there, runs), gather(now, here, runs), runs));
 }
 
-std::vector<ChainPoint> measureChain(Renderer& renderer, uint32_t lastFrame, const CameraAt& cameraAt, const Tick& tick)
-{
-    Chain chain(renderer, cameraAt);
-    while (chain.frame() < lastFrame) {
-        chain.step();
-        if (tick && !tick()) break;
-    }
-    return chain.points();
-}
-
 void LawMeter::Sums::add(double c, double s, double n)
 {
     const double d = c - color;
@@ -100,14 +105,18 @@ double LawMeter::Sums::plateau(double n) const
     return n / (n - 1) * (weight * ratio - color * color);
 }
 
-LawMeter::LawMeter(uint32_t runs, const std::array<glm::vec3, 3>& targets, image::Image emission)
-    : runs_(runs), targets_(targets), emission_(std::move(emission)), sums_(3 * runs_ * emission_.pixels.size())
+LawMeter::LawMeter(Renderer& renderer, image::Image emission)
+    : renderer_(renderer), runs_(renderer.runs()), targets_(resolvingTargets(renderer.settings().method)),
+      emission_(std::move(emission)), sums_(3 * runs_ * emission_.pixels.size())
 {
+    renderer_.reset();
 }
 
-void LawMeter::add(const image::Image& frame)
+void LawMeter::step()
 {
     const size_t pixels = emission_.pixels.size();
+    renderer_.renderFrame();
+    const image::Image frame = renderer_.readFrame();
     CHECK_EQ(frame.pixels.size(), runs_ * pixels);
     ++frames_;
     for (size_t i = 0; i < frame.pixels.size(); ++i) {
@@ -161,39 +170,18 @@ FrameLaw LawMeter::law() const
     return law;
 }
 
-std::optional<FrameLaw> measureLaw(Renderer& renderer, uint32_t frames, const std::array<glm::vec3, 3>& targets,
-                                   const image::Image& emission, const Tick& tick)
-{
-    CHECK_LE(3u, renderer.runs());
-    LawMeter meter(renderer.runs(), targets, emission);
-    renderer.reset();
-    while (meter.frames() < frames) {
-        renderer.renderFrame();
-        meter.add(renderer.readFrame());
-        if (tick && !tick()) return std::nullopt;
-    }
-    return meter.law();
-}
-
-std::array<glm::vec3, 3> resolvingTargets(Method method)
-{
-    std::array<glm::vec3, 3> targets = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)};
-    if (method == Method::Pt) return targets;
-    const Estimator& estimator = estimatorOf(method);
-    for (int c = 0; c < 3; ++c)
-        for (size_t r = 0; r < estimator.target.size(); ++r) {
-            if (estimator.resolve[r][c] == 0) continue;
-            CHECK_EQ(estimator.resolve[r][c], 1.0f); // one reservoir a channel: the law knows no mixtures
-            targets[size_t(c)] = estimator.target[r];
-        }
-    return targets;
-}
-
 Settings lawSettings(Settings settings)
 {
     settings.temporal = false;
     settings.spatial = 0;
     settings.color = Color::Chosen;
+    return settings;
+}
+
+Settings emissionSettings(Settings settings)
+{
+    settings.method = Method::Pt;
+    settings.maxBounces = 0;
     return settings;
 }
 

@@ -3,8 +3,6 @@
 // runs, and what the closed form says about it (docs/DECISIONS.md, "Measuring").
 
 #include <array>
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -15,9 +13,6 @@
 
 namespace passes
 {
-
-// After every frame; false: stop here.
-using Tick = std::function<bool()>;
 
 // Frames M-1 and M of a batch of runs, averaged over pixels and channels.
 struct ChainPoint {
@@ -47,10 +42,6 @@ class Chain
     std::vector<ChainPoint> points_;
 };
 
-// The points of frames 1 to `lastFrame`, or as many as were reached when `tick` stopped it.
-std::vector<ChainPoint> measureChain(Renderer& renderer, uint32_t lastFrame, const CameraAt& cameraAt,
-                                     const Tick& tick);
-
 // Single frames without reuse, of a batch of runs: what the law of the chain is made of.
 struct FrameLaw {
     statistics::BatchValue variance; // of a frame's color, mean over pixels and channels: sigma^2 for the path tracer
@@ -60,13 +51,13 @@ struct FrameLaw {
     bool operator==(const FrameLaw&) const = default;
 };
 
-// `targets[c]` is the target of the reservoir that channel c is resolved from (resolvingTargets); for the path tracer,
-// each channel itself. `emission` is what each pixel sees directly (one run's picture): no part of what is resampled.
+// Measures it on a renderer of lawSettings(), frame by frame. `emission` is what each pixel sees directly (one run's
+// picture): no part of what is resampled.
 class LawMeter
 {
   public:
-    LawMeter(uint32_t runs, const std::array<glm::vec3, 3>& targets, image::Image emission);
-    void add(const image::Image& frame); // of all runs
+    LawMeter(Renderer& renderer, image::Image emission); // starts over
+    void step();                                         // renders the next frame
     uint32_t frames() const { return frames_; }
     FrameLaw law() const; // needs two frames; below three runs there is nothing to leave out (`without` is empty)
 
@@ -80,21 +71,19 @@ class LawMeter
         void add(double c, double s, double n);
         double plateau(double n) const; // P from the means of n values
     };
+    Renderer& renderer_;
     size_t runs_;
-    std::array<glm::vec3, 3> targets_;
+    std::array<glm::vec3, 3> targets_; // [c]: of the reservoir that channel c is resolved from
     image::Image emission_;
     uint32_t frames_ = 0;
     std::vector<Sums> sums_; // run by run, pixel by pixel, by channel
 };
 
-// The same of the renderer's next frames; nothing when `tick` stops it. Needs three runs.
-std::optional<FrameLaw> measureLaw(Renderer& renderer, uint32_t frames, const std::array<glm::vec3, 3>& targets,
-                                   const image::Image& emission, const Tick& tick);
-
-std::array<glm::vec3, 3> resolvingTargets(Method method);
-
 // Of the single frames that the law of these settings is made of: without reuse, and showing the chosen samples.
 Settings lawSettings(Settings settings);
+
+// Of the picture of what each pixel sees directly.
+Settings emissionSettings(Settings settings);
 
 // Whether the law of the chain holds: temporal reuse alone, every pixel seeing the same point in each frame (the camera
 // rests, and SceneOnDevice::viewRepeats()).

@@ -78,10 +78,39 @@ Settings referenceSettings(const Settings& settings)
     return traced;
 }
 
-References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
-    : settings_(referenceSettings(settings)), cameraAt_(std::move(cameraAt)), options_(std::move(options))
+ReferenceTracer::ReferenceTracer(std::unique_ptr<Renderer> renderer)
+    : renderer_(std::move(renderer)), settings_(renderer_->settings())
 {
-    renderer_ = std::make_unique<Renderer>(sharing, settings_);
+    begin();
+}
+
+void ReferenceTracer::restart()
+{
+    mean_ = {};
+    begin();
+}
+
+bool ReferenceTracer::step(uint64_t length)
+{
+    renderer_->renderFrame();
+    if (renderer_->frameCount() != length) return false;
+    mean_.add(renderer_->readMean());
+    begin();
+    return true;
+}
+
+void ReferenceTracer::begin()
+{
+    Settings settings = settings_;
+    settings.seed -= 1 + mean_.count();
+    renderer_->apply(settings);
+    renderer_->reset();
+}
+
+References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
+    : settings_(referenceSettings(settings)), cameraAt_(std::move(cameraAt)), options_(std::move(options)),
+      tracer_(std::make_unique<Renderer>(sharing, settings_))
+{
 }
 
 References::References(const std::filesystem::path& file, const Settings& settings) : settings_(settings)
@@ -101,9 +130,12 @@ const Reference* References::after(uint64_t frames)
 {
     const uint64_t index = cameraAt_ ? frames : 0;
     if (const auto found = made_.find(index); found != made_.end()) return &found->second;
-    if (cameraAt_) renderer_->setCamera(cameraAt_(frames - 1));
-    traceBatch(0, 1);
-    const std::vector<glm::vec3> pixels = renderer_->readMean().pixels;
+    Renderer& renderer = tracer_->renderer();
+    if (cameraAt_) renderer.setCamera(cameraAt_(frames - 1));
+    renderer.apply(settings_); // with the seed that no batch has
+    renderer.reset();
+    renderer.renderFrame();
+    const std::vector<glm::vec3> pixels = renderer.readMean().pixels;
     const std::string text =
         fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
     const std::string key =
@@ -126,26 +158,18 @@ const Reference* References::after(uint64_t frames)
     return &made_.emplace(index, std::move(*reference)).first->second;
 }
 
-void References::traceBatch(uint64_t batch, uint64_t frames)
-{
-    Settings settings = settings_;
-    settings.seed -= batch;
-    renderer_->apply(settings);
-    renderer_->reset();
-    for (uint64_t frame = 0; frame < frames; ++frame) renderer_->renderFrame();
-}
-
 std::optional<Reference> References::trace()
 {
     const uint64_t length = std::clamp<uint64_t>(options_.precision.maxFrames / BATCHES, 1, LONGEST_BATCH);
     const double wanted = options_.precision.error * options_.precision.error;
-    image::MeanPicture mean;
+    tracer_->restart();
+    const image::MeanPicture& mean = tracer_->mean();
     Reference reference;
     const auto reached = [&] { return mean.count() >= FIRST_CHECK && reference.error.relmse <= wanted; };
     while (!reached() && (mean.count() < FIRST_CHECK || reference.pathTraced < options_.precision.maxFrames)) {
         if (options_.stop()) return std::nullopt;
-        traceBatch(1 + mean.count(), length);
-        mean.add(renderer_->readMean());
+        while (!tracer_->step(length)) {
+        }
         reference.pathTraced += length;
         if (mean.count() < 2) continue;
         reference.error = mean.ownError();

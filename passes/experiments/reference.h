@@ -29,9 +29,27 @@ struct Precision {
     uint64_t maxFrames = 16384; // and what it may cost at most
 };
 
-// Of the path tracer that makes the reference of these settings: with other random numbers than any seed near theirs,
-// and in batches with seeds that count down.
+// Of the path tracer that makes the reference of these settings: with other random numbers than any seed near theirs.
 Settings referenceSettings(const Settings& settings);
+
+// Path traces a reference, a frame a step: in batches of equal length, with seeds that count down, since the spread of
+// the batches says how precise their mean is.
+class ReferenceTracer
+{
+  public:
+    explicit ReferenceTracer(std::unique_ptr<Renderer> renderer); // of referenceSettings()
+    Renderer& renderer() { return *renderer_; }
+    void restart();             // forgets all batches
+    bool step(uint64_t length); // renders a frame; true: with it a batch of so many is complete
+    const image::MeanPicture& mean() const { return mean_; } // of the batches that are
+
+  private:
+    void begin();
+
+    std::unique_ptr<Renderer> renderer_;
+    Settings settings_;
+    image::MeanPicture mean_;
+};
 
 // References of one scene, one per camera, made when first asked for. What was made is found again in the cache by the
 // settings, the precision and the pixels of one frame: those change with the scene, the device and the program.
@@ -56,13 +74,12 @@ class References
     const std::vector<std::string>& warnings() const { return warnings_; } // about the file, for the person
 
   private:
-    void traceBatch(uint64_t batch, uint64_t frames);
     std::optional<Reference> trace(); // of the renderer's camera; nothing when stopped
 
     Settings settings_;
     CameraAt cameraAt_;
     Options options_;
-    std::unique_ptr<Renderer> renderer_; // null: all are made
+    std::optional<ReferenceTracer> tracer_; // empty: all are made
     std::map<uint64_t, Reference> made_;
     std::vector<std::string> warnings_;
 };

@@ -69,6 +69,20 @@ class Autocovariance : public RendererFixture
     }
 };
 
+std::vector<passes::ChainPoint> chainOf(Renderer& renderer, uint32_t lastFrame, const passes::CameraAt& cameraAt = {})
+{
+    passes::Chain chain(renderer, cameraAt);
+    while (chain.frame() < lastFrame) chain.step();
+    return chain.points();
+}
+
+passes::FrameLaw lawOf(Renderer& renderer, uint32_t frames, const image::Image& emission)
+{
+    passes::LawMeter meter(renderer, emission);
+    while (meter.frames() < frames) meter.step();
+    return meter.law();
+}
+
 double standardError(const statistics::Estimate& estimate)
 {
     return std::sqrt(estimate.varianceOfMean);
@@ -87,7 +101,7 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
     Settings plainSettings = settings(Method::Pt);
     plainSettings.seed = 99; // independent of the chains
     Renderer traced = renderer(scene, plainSettings, RUNS);
-    const auto plain = measureLaw(traced, LAW_FRAMES, passes::resolvingTargets(Method::Pt), emission, {});
+    const passes::FrameLaw plain = lawOf(traced, LAW_FRAMES, emission);
     for (const auto& [method, color] : {std::pair(Method::RgbRestir, Color::Chosen),
                                         {Method::RestirPt, Color::Chosen},
                                         {Method::RestirPt, Color::Weighted},
@@ -96,15 +110,14 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
         Settings s = settings(method);
         s.color = color;
         Renderer own = renderer(scene, s, RUNS);
-        const std::vector<passes::ChainPoint> points = measureChain(own, FRAMES, {}, {});
+        const std::vector<passes::ChainPoint> points = chainOf(own, FRAMES);
         s.seed = plainSettings.seed;
         own.apply(passes::lawSettings(s));
-        const auto law = measureLaw(own, LAW_FRAMES, passes::resolvingTargets(method), emission, {});
-        ASSERT_TRUE(law);
+        const passes::FrameLaw law = lawOf(own, LAW_FRAMES, emission);
         ASSERT_EQ(points.size(), 7u);
         for (const passes::ChainPoint& point : points) {
             const statistics::Estimate measured = statistics::combine(std::span(&point.autocovariance, 1));
-            const passes::FrameLaw& single = color == Color::Weighted && point.frame == 2 ? *plain : *law;
+            const passes::FrameLaw& single = color == Color::Weighted && point.frame == 2 ? plain : law;
             const statistics::BatchValue prediction = passes::predictedAutocovariance(single, color, point.frame);
             const statistics::Estimate predicted = statistics::combine(std::span(&prediction, 1));
             const statistics::Difference difference = statistics::compare(measured, predicted);
@@ -116,13 +129,13 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
         }
         const double last = points.back().autocovariance.value;
         if (method == Method::RgbRestir) {
-            EXPECT_NEAR(law->plateau.value, 0, 1e-12 * law->variance.value);
+            EXPECT_NEAR(law.plateau.value, 0, 1e-12 * law.variance.value);
             const double slope = std::log2(last / points.front().autocovariance.value) / double(points.size() - 1);
             EXPECT_NEAR(slope, -1.0, 0.03);
         } else {
-            const statistics::Estimate plateau = statistics::combine(std::span(&law->plateau, 1));
+            const statistics::Estimate plateau = statistics::combine(std::span(&law.plateau, 1));
             EXPECT_GT(plateau.mean, 10 * standardError(plateau));
-            EXPECT_NEAR(last - law->variance.value / FRAMES, plateau.mean, 0.05 * plateau.mean);
+            EXPECT_NEAR(last - law.variance.value / FRAMES, plateau.mean, 0.05 * plateau.mean);
         }
         for (const auto& [stage, count] : own.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
     }
@@ -135,25 +148,15 @@ TEST_F(Autocovariance, OneChainServesEveryCap)
     const scene::Scene scene = hues();
     Settings s = settings(Method::RestirPt);
     Renderer own = renderer(scene, s, RUNS);
-    const std::vector<passes::ChainPoint> points = measureChain(own, FRAMES, {}, {});
+    const std::vector<passes::ChainPoint> points = chainOf(own, FRAMES);
     for (const passes::ChainPoint& point : points) {
         s.maxConfidence = point.frame;
         own.apply(s);
-        EXPECT_EQ(measureChain(own, point.frame, {}, {}).back(), point) << "M_c = " << point.frame;
+        EXPECT_EQ(chainOf(own, point.frame).back(), point) << "M_c = " << point.frame;
     }
     s.maxConfidence = FRAMES / 4; // where it binds, it shows
     own.apply(s);
-    EXPECT_NE(measureChain(own, FRAMES, {}, {}).back(), points.back());
-}
-
-TEST_F(Autocovariance, StopsWhenAskedAndKeepsWhatItHas)
-{
-    const scene::Scene scene = hues();
-    Settings s = settings(Method::RestirPt);
-    Renderer own = renderer(scene, s, 3);
-    int ticks = 0;
-    EXPECT_EQ(measureChain(own, 64, {}, [&] { return ++ticks < 9; }).size(), 3u); // M = 2, 4, 8
-    EXPECT_FALSE(measureLaw(own, 64, passes::resolvingTargets(s.method), emissionOf(scene), [] { return false; }));
+    EXPECT_NE(chainOf(own, FRAMES).back(), points.back());
 }
 
 // A camera that moves by exactly nothing pairs every pixel that sees something with itself: the same figure, over
@@ -163,8 +166,8 @@ TEST_F(Autocovariance, AlongReprojectedPixelsIsTheSameFigureAtRest)
     const scene::Scene scene = hues();
     Settings s = settings(Method::RestirPt);
     Renderer own = renderer(scene, s, 8);
-    const std::vector<passes::ChainPoint> rest = measureChain(own, 8, {}, {});
-    const std::vector<passes::ChainPoint> pairs = measureChain(own, 8, [&](uint64_t) { return scene.cameras[0]; }, {});
+    const std::vector<passes::ChainPoint> rest = chainOf(own, 8);
+    const std::vector<passes::ChainPoint> pairs = chainOf(own, 8, [&](uint64_t) { return scene.cameras[0]; });
     ASSERT_EQ(pairs.size(), rest.size());
     for (size_t i = 0; i < rest.size(); ++i) {
         EXPECT_LE(pairs[i].pixels, rest[i].pixels);
@@ -173,7 +176,7 @@ TEST_F(Autocovariance, AlongReprojectedPixelsIsTheSameFigureAtRest)
                     rest[i].autocovariance.value * double(rest[i].pixels), 1e-9);
     }
     // One that turns fast finds less history, and frames depend less on each other.
-    const std::vector<passes::ChainPoint> moving = measureChain(own, 8, passes::cameraOrbit(scene.cameras[0], 20), {});
+    const std::vector<passes::ChainPoint> moving = chainOf(own, 8, passes::cameraOrbit(scene.cameras[0], 20));
     EXPECT_GT(moving.back().pixels, pairs.back().pixels / 4);
     const auto correlation = [](const passes::ChainPoint& p) { return p.autocovariance.value / p.variance.value; };
     EXPECT_GT(correlation(moving.back()), 0.1);
