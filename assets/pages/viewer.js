@@ -1,30 +1,5 @@
-#include "ui/report/viewer.h"
-
-#include "engine/base/check.h"
-#include "ui/report/page.h"
-
-#include <fmt/format.h>
-
-namespace ui
-{
-
-namespace
-{
-
-constexpr const char* STYLE = R"(<style>
-#viewer { outline: none; } #viewer:focus .stage { border-color: #3a6fd8; }
-#viewer .stage { overflow: auto; max-height: 80vh; border: 2px solid #d5dae3; background: #22262e; }
-#viewer canvas { display: block; image-rendering: pixelated; cursor: grab; touch-action: none; }
-#viewer[data-mode=split] canvas { cursor: ew-resize; }
-#viewer .tools { display: flex; flex-wrap: wrap; gap: .3rem .5rem; margin: .4rem 0; align-items: center; }
-#viewer button { font: inherit; padding: .1rem .6rem; border: 1px solid #aab3c5; border-radius: .3rem; background: #f3f5f9; cursor: pointer; }
-#viewer button.on { background: #3a6fd8; color: #fff; border-color: #3a6fd8; }
-#viewer kbd { font: .8rem ui-monospace, monospace; border: 1px solid #c8cfdb; border-radius: .2rem; padding: 0 .3rem; }
-#viewer .status { font: .85rem ui-monospace, monospace; color: #566074; min-height: 1.5em; }
-</style>)";
-
-// Light is taken back from the 8 bits of the pictures: v is sRGB of t = c/(c+1).
-constexpr const char* SCRIPT = R"(<script>
+// Flips through pictures: by key, by a slider between two, or as their difference. The first is the reference. Light is taken
+// back from the 8 bits of the pictures: v is sRGB of t = c/(c+1).
 (() => {
   const viewer = document.getElementById('viewer'), stage = viewer.querySelector('.stage');
   const canvas = viewer.querySelector('canvas'), context = canvas.getContext('2d', {willReadFrequently: true});
@@ -162,33 +137,3 @@ constexpr const char* SCRIPT = R"(<script>
     draw();
   });
 })();
-</script>)";
-
-} // namespace
-
-std::string viewerHtml(const std::vector<ViewerPicture>& pictures)
-{
-    CHECK(pictures.size() > 1);
-    std::string html = STYLE;
-    html += "<div id=\"viewer\" tabindex=\"0\">\n<div class=\"tools\">\n";
-    for (size_t i = 0; i < pictures.size(); ++i)
-        html += fmt::format("<button data-picture=\"{}\">{} {}</button>\n", i,
-                            i < 10 ? fmt::format("<kbd>{}</kbd>", i) : "", escapeHtml(pictures[i].name));
-    html += R"(</div>
-<div class="tools">
-<button data-key="f" data-mode="flip"><kbd>F</kbd> flip</button>
-<button data-key="s" data-mode="split"><kbd>S</kbd> split</button>
-<button data-key="d" data-mode="difference"><kbd>D</kbd> difference</button>
-<button data-key="g"><kbd>G</kbd> <span class="gain"></span></button>
-<button data-key="-"><kbd>-</kbd></button> <span class="zoom"></span> <button data-key="+"><kbd>+</kbd></button>
-<button data-key="["><kbd>[</kbd></button> <span class="stops"></span> <button data-key="]"><kbd>]</kbd></button>
-</div>
-<div class="stage"><canvas></canvas></div>
-<div class="status">Space flips between the reference and the picture chosen; in split view drag the line; else dragging moves the picture.</div>
-)";
-    for (const ViewerPicture& picture : pictures)
-        html += fmt::format("<img hidden src=\"{}\" alt=\"{}\">\n", pngAddress(picture.png), escapeHtml(picture.name));
-    return html + "</div>\n" + SCRIPT + "\n";
-}
-
-} // namespace ui
