@@ -10,12 +10,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/csv.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/bench/extreme_cases.h"
-#include "ui/report/csv.h"
 #include "ui/report/page.h"
 
 namespace
@@ -192,6 +192,19 @@ std::string markdownOf(const std::vector<Row>& rows)
     return text;
 }
 
+constexpr const char* PAGE = R"({{> head.html}}
+{{> verdicts.html}}
+{{#table}}
+{{> table.html}}
+{{/table}}
+<p>z: difference from the float64 reference or the closed form over its standard error, the worst of all tiles of 8x8
+pixels, of the whole picture, and of the channels. variance: of a pixel in one run (ReSTIR: the last frame of a run; pt: a
+frame), mean over the picture, over the square of the picture's mean. largest: the brightest pixel of any run over the
+picture's mean.</p>
+{{> provenance.html}}
+{{> foot.html}}
+)";
+
 void write(const std::filesystem::path& file, const std::string& text)
 {
     files::writeAtomically(file, std::as_bytes(std::span(text)));
@@ -200,7 +213,7 @@ void write(const std::filesystem::path& file, const std::string& text)
 void report(const std::filesystem::path& folder, const std::vector<Row>& rows, const gpu::Adapter& adapter)
 {
     const std::vector<std::vector<std::string>> table = tableOf(rows);
-    ui::Csv csv(header());
+    Csv csv(header());
     size_t unsound = 0;
     double worst = 0;
     for (const std::vector<std::string>& line : table) csv.row(line);
@@ -209,25 +222,21 @@ void report(const std::filesystem::path& folder, const std::vector<Row>& rows, c
             unsound += !sound(figures);
             worst = std::max(worst, figures.z);
         }
-    ui::Page page("Extremes survived");
-    page.verdict(unsound == 0 ? fmt::format("{} cases, {} with their methods: no value was not finite, and the worst "
-                                            "|z| against the truth is {:.2f} (limit {}).",
-                                            rows.size(), table.size(), worst, LIMIT)
-                              : fmt::format("{} of {} cases with their methods are not sound.", unsound, table.size()));
-    page.table(header(), table);
-    page.paragraph(
-        "z: difference from the float64 reference or the closed form over its standard error, the worst of all tiles "
-        "of "
-        "8x8 pixels, of the whole picture, and of the channels. variance: of a pixel in one run (ReSTIR: the last "
-        "frame "
-        "of a run; pt: a frame), mean over the picture, over the square of the picture's mean. largest: the brightest "
-        "pixel of any run over the picture's mean.");
-    page.provenance({.command = ui::commandLine(),
-                     .scene = "of each case (tests/bench/extreme_cases.cpp)",
-                     .device = adapter.name,
-                     .driver = adapter.driver});
+    const std::string verdict =
+        unsound == 0
+            ? fmt::format("{} cases, {} with their methods: no value was not finite, and the worst |z| against the "
+                          "truth is {:.2f} (limit {}).",
+                          rows.size(), table.size(), worst, LIMIT)
+            : fmt::format("{} of {} cases with their methods are not sound.", unsound, table.size());
+    const ui::Provenance provenance{.command = ui::commandLine(),
+                                    .scene = "of each case (tests/bench/extreme_cases.cpp)",
+                                    .device = adapter.name,
+                                    .driver = adapter.driver};
     write(folder / "extremes.csv", csv.text());
-    write(folder / "extremes.html", page.html());
+    write(folder / "extremes.html", ui::fillPage(PAGE, {{"title", "Extremes survived"},
+                                                        {"verdicts", std::vector<std::string>{verdict}},
+                                                        {"table", ui::tableData(header(), table)},
+                                                        {"provenance", ui::provenanceData(provenance)}}));
     write(folder / "extremes.md", markdownOf(rows));
 }
 

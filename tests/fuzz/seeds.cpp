@@ -4,10 +4,10 @@
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/image/codecs.h"
 #include "passes/checkpoint.h"
+#include "passes/experiments/correlation_store.h"
+#include "passes/experiments/race_store.h"
 #include "tests/support/program.h"
 #include "tests/support/tiny_gltf.h"
-#include "ui/report/correlation_store.h"
-#include "ui/report/race_store.h"
 #include "ui/window/window_memory.h"
 
 #include <nlohmann/json.hpp>
@@ -79,18 +79,18 @@ std::vector<File> raceStore()
 {
     const TemporaryDirectory folder;
     passes::Repeat repeat{.samples = {{.method = 1, .average = true, .frames = 3}}};
-    ui::RaceStore(folder / "", "key", {"a", "b"}).write(1, repeat);
+    passes::RaceStore(folder / "", "key", {"a", "b"}).write(1, repeat);
     return {files::read(folder / "repeats/0001.json")};
 }
 
 std::vector<File> correlationBatch()
 {
     const statistics::BatchValue value = {.value = 0.1, .without = {0.25, 1e300, 3}};
-    return {ui::toBytes({.method = "pt",
-                         .index = 7,
-                         .runs = 3,
-                         .law = passes::FrameLaw{.variance = value, .plateau = value, .floor = {{1, 2, 3}}},
-                         .points = {{.frame = 2, .pixels = 9, .autocovariance = value, .variance = value}}})};
+    return {passes::toBytes({.method = "pt",
+                             .index = 7,
+                             .runs = 3,
+                             .law = passes::FrameLaw{.variance = value, .plateau = value, .floor = {{1, 2, 3}}},
+                             .points = {{.frame = 2, .pixels = 9, .autocovariance = value, .variance = value}}})};
 }
 
 std::vector<File> windowMemory()

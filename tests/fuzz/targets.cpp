@@ -8,9 +8,9 @@
 #include "engine/scene/scene_tables.h"
 #include "passes/camera_path.h"
 #include "passes/checkpoint.h"
+#include "passes/experiments/correlation_store.h"
+#include "passes/experiments/race_store.h"
 #include "tests/support/program.h"
-#include "ui/report/correlation_store.h"
-#include "ui/report/race_store.h"
 #include "ui/window/window_memory.h"
 
 #include <cmath>
@@ -119,14 +119,14 @@ void raceStore(Bytes bytes)
     static const TemporaryDirectory folder;
     std::filesystem::create_directories(folder / "repeats");
     writeInput(folder / "repeats/0000.json", bytes);
-    for (const passes::Repeat& repeat : ui::RaceStore(folder / "", "key", {"a", "b"}).read(1))
+    for (const passes::Repeat& repeat : passes::RaceStore(folder / "", "key", {"a", "b"}).read(1))
         for (const passes::Sample& sample : repeat.samples) CHECK_LT(sample.method, 2u);
 }
 
 void correlationBatch(Bytes bytes)
 {
-    const ui::CorrelationBatch batch = ui::fromBytes({bytes.begin(), bytes.end()});
-    CHECK(ui::toBytes(ui::fromBytes(ui::toBytes(batch))) == ui::toBytes(batch));
+    const passes::CorrelationBatch batch = passes::fromBytes({bytes.begin(), bytes.end()});
+    CHECK(passes::toBytes(passes::fromBytes(passes::toBytes(batch))) == passes::toBytes(batch));
 }
 
 void windowMemory(Bytes bytes)

@@ -49,11 +49,11 @@ void requireComparable(const passes::Settings& settings, const passes::Settings&
 
 } // namespace
 
-std::vector<NamedMethod> readMethods(const std::string& list, const passes::Settings& base)
+std::vector<passes::NamedMethod> readMethods(const std::string& list, const passes::Settings& base)
 {
-    std::vector<NamedMethod> methods;
+    std::vector<passes::NamedMethod> methods;
     for (const std::string& entry : split(list, ',')) {
-        NamedMethod method{entry, base};
+        passes::NamedMethod method{entry, base};
         const std::vector<std::string> words = split(entry, ':');
         try {
             for (size_t i = 0; i < words.size(); ++i) applyWord(method.settings, words[i], i == 0);
@@ -61,7 +61,7 @@ std::vector<NamedMethod> readMethods(const std::string& list, const passes::Sett
             throw UsageError("--methods: \"{}\" is no method: {}", entry, error.what());
         }
         requireComparable(method.settings, base, entry);
-        if (std::ranges::any_of(methods, [&](const NamedMethod& other) { return other.name == entry; }))
+        if (std::ranges::any_of(methods, [&](const passes::NamedMethod& other) { return other.name == entry; }))
             throw UsageError("--methods: \"{}\" is there twice.", entry);
         methods.push_back(std::move(method));
     }

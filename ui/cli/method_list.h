@@ -6,26 +6,21 @@
 
 #include <CLI/CLI.hpp>
 
-#include "passes/settings.h"
+#include "passes/experiments/named_method.h"
 
 namespace ui
 {
 
-struct NamedMethod {
-    std::string name; // as in the list, unique
-    passes::Settings settings;
-};
-
 // "pt,restir-pt:replay,rgb-restir:spatial=0:max-confidence=64,preset.json": each entry is a method or a preset, then a
 // shift or NAME=VALUE as often as needed, on top of `base`. Throws UsageError: anything else, an entry twice, settings
 // that change what is seen (size, camera, bounces, filter, environment) or how long it is rendered.
-std::vector<NamedMethod> readMethods(const std::string& list, const passes::Settings& base);
+std::vector<passes::NamedMethod> readMethods(const std::string& list, const passes::Settings& base);
 
 class MethodsOption
 {
   public:
     void addTo(CLI::App& app, const std::string& initial); // must live until it is read
-    std::vector<NamedMethod> read(const passes::Settings& base) const { return readMethods(list_, base); }
+    std::vector<passes::NamedMethod> read(const passes::Settings& base) const { return readMethods(list_, base); }
 
   private:
     std::string list_;

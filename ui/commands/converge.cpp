@@ -1,8 +1,9 @@
 // converge SCENE -o DIR: error against run time for several methods, as CSV, SVG and one page.
 
 #include "engine/base/fingerprint.h"
-#include "passes/race.h"
-#include "passes/reference.h"
+#include "passes/experiments/race.h"
+#include "passes/experiments/race_store.h"
+#include "passes/experiments/reference.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
 #include "ui/cli/method_list.h"
@@ -16,7 +17,6 @@
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 #include "ui/report/converge_page.h"
-#include "ui/report/race_store.h"
 
 #include <algorithm>
 #include <chrono>
@@ -48,27 +48,27 @@ struct ConvergeCommand {
 
     passes::Race::Limits limitsOf(const passes::Settings& wanted) const;
     std::string keyOf(const ConvergeReport& report, const passes::Race::Limits& limits) const;
-    void write(ConvergeReport& report, const RaceStore& store, const passes::References& references) const;
+    void write(ConvergeReport& report, const passes::RaceStore& store, const passes::References& references) const;
 };
 
-std::vector<passes::Settings> settingsOf(const std::vector<NamedMethod>& methods)
+std::vector<passes::Settings> settingsOf(const std::vector<passes::NamedMethod>& methods)
 {
     std::vector<passes::Settings> list;
-    for (const NamedMethod& method : methods) list.push_back(method.settings);
+    for (const passes::NamedMethod& method : methods) list.push_back(method.settings);
     return list;
 }
 
-std::vector<std::string> namesOf(const std::vector<NamedMethod>& methods)
+std::vector<std::string> namesOf(const std::vector<passes::NamedMethod>& methods)
 {
     std::vector<std::string> list;
-    for (const NamedMethod& method : methods) list.push_back(method.name);
+    for (const passes::NamedMethod& method : methods) list.push_back(method.name);
     return list;
 }
 
 // The path tracer, first in the list when it is not there.
-uint32_t ensurePathTracer(std::vector<NamedMethod>& methods, const passes::Settings& base)
+uint32_t ensurePathTracer(std::vector<passes::NamedMethod>& methods, const passes::Settings& base)
 {
-    const auto isPt = [](const NamedMethod& method) { return method.settings.method == passes::Method::Pt; };
+    const auto isPt = [](const passes::NamedMethod& method) { return method.settings.method == passes::Method::Pt; };
     if (std::ranges::none_of(methods, isPt)) methods.insert(methods.begin(), readMethods("pt", base).front());
     return uint32_t(std::ranges::find_if(methods, isPt) - methods.begin());
 }
@@ -105,13 +105,14 @@ std::string ConvergeCommand::keyOf(const ConvergeReport& report, const passes::R
                                       fmt::format("{} {}", precision.error, precision.maxFrames),
                                       fmt::format("{} {}", limits.frames, limits.seconds)};
     for (const auto& [name, value] : motion.toText()) facts.insert(facts.end(), {name, value, stampOf(value)});
-    for (const NamedMethod& method : report.methods) facts.push_back(method.name + " " + hash(method.settings));
+    for (const passes::NamedMethod& method : report.methods) facts.push_back(method.name + " " + hash(method.settings));
     uint64_t state = 0;
     for (const std::string& fact : facts) state = fingerprint(std::string_view(fact), state);
     return fmt::format("{:016x}", state);
 }
 
-void ConvergeCommand::write(ConvergeReport& report, const RaceStore& store, const passes::References& references) const
+void ConvergeCommand::write(ConvergeReport& report, const passes::RaceStore& store,
+                            const passes::References& references) const
 {
     report.references = references.made();
     report.pictures.clear();
@@ -163,10 +164,10 @@ int ConvergeCommand::run() const
                          .driver = gpu.adapter().driver,
                          .settings = passes::toText(wanted)};
     for (const auto& fact : motion.toText()) report.provenance.settings.push_back(fact);
-    for (const NamedMethod& method : report.methods)
+    for (const passes::NamedMethod& method : report.methods)
         report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));
 
-    const RaceStore store(directory, keyOf(report, limits), namesOf(report.methods));
+    const passes::RaceStore store(directory, keyOf(report, limits), namesOf(report.methods));
     if (resume)
         report.repeats = store.read(runs);
     else

@@ -1,6 +1,7 @@
 // correlate SCENE -o DIR: the paper's experiment, how strongly frames of temporal reuse depend on each other.
 
-#include "passes/autocovariance.h"
+#include "passes/experiments/correlation_store.h"
+#include "passes/experiments/correlator.h"
 #include "ui/cli/device_options.h"
 #include "ui/cli/interrupt.h"
 #include "ui/cli/method_list.h"
@@ -14,7 +15,6 @@
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 #include "ui/report/correlation_page.h"
-#include "ui/report/correlation_store.h"
 
 #include <algorithm>
 #include <chrono>
@@ -28,11 +28,7 @@ namespace ui
 namespace
 {
 
-constexpr uint32_t MIN_BATCH = 3;                    // runs: below, nothing is left to leave out
-constexpr uint32_t MIN_LAW_FRAMES = 64;              // of a run
-constexpr uint32_t LAW_SHARE = 4;                    // single frames for the law: a quarter of the chain's
-constexpr uint64_t NEXT_BATCH = 0x9e3779b97f4a7c15u; // between seeds
-constexpr uint64_t LAW_SEED = 0x5851f42d4c957f2du;   // the law's random numbers are none of the chain's
+constexpr uint32_t MIN_BATCH = 3; // runs: below, nothing is left to leave out
 
 // The paper's protocol.
 passes::Settings protocol()
@@ -61,111 +57,9 @@ struct CorrelateCommand {
     SettingsOptions settings{protocol()};
 
     passes::Settings readSettings() const;
-    std::vector<NamedMethod> readMethods(const passes::Settings& base) const;
-    std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const;
+    std::vector<passes::NamedMethod> readMethods(const passes::Settings& base) const;
+    std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<passes::NamedMethod>& list) const;
     int run() const;
-};
-
-uint32_t lastFrame(const NamedMethod& method)
-{
-    return std::min(method.settings.frames, method.settings.maxConfidence);
-}
-
-uint32_t lawFrames(const NamedMethod& method)
-{
-    return std::max(MIN_LAW_FRAMES, lastFrame(method) / LAW_SHARE);
-}
-
-// Measures batches, one after the other, with the renderers that it needs.
-class Correlator
-{
-  public:
-    Correlator(gpu::Device& gpu, const scene::Scene& world, const passes::Settings& settings, passes::CameraAt cameraAt,
-               const std::function<void(double)>& bvhProgress)
-        : cameraAt_(std::move(cameraAt)), plain_(settings)
-    {
-        plain_.method = passes::Method::Pt;
-        passes::Settings dark = plain_;
-        dark.maxBounces = 0;
-        emitters_ = std::make_unique<passes::Renderer>(gpu, world, dark, bvhProgress);
-        if (cameraAt_) emitters_->setCamera(cameraAt_(0));
-        emitters_->renderFrame();
-        emission_ = emitters_->readFrame();
-    }
-
-    bool sameView() const { return !cameraAt_ && emitters_->scene().viewRepeats(plain_); }
-
-    // The law of plain frames, as many as the longest law of a method has.
-    CorrelationBatch measurePathTracer(uint32_t index, uint32_t runs, uint32_t frames, const passes::Tick& tick)
-    {
-        CorrelationBatch result{.method = PATH_TRACER, .index = index, .runs = runs};
-        passes::Renderer& renderer = rendererOf(PATH_TRACER, plain_, runs);
-        result.law = law(renderer, plain_, index, frames, tick);
-        result.nonFinite = nonFinite(renderer);
-        return result;
-    }
-
-    CorrelationBatch measure(const NamedMethod& method, uint32_t index, uint32_t runs, const passes::Tick& tick)
-    {
-        CorrelationBatch result{.method = method.name, .index = index, .runs = runs};
-        passes::Renderer& renderer = rendererOf(method.name, method.settings, runs);
-        if (needsLaw(method)) {
-            result.law = law(renderer, method.settings, index, lawFrames(method), tick);
-            result.nonFinite = nonFinite(renderer);
-            if (!result.law) return result;
-        }
-        passes::Settings own = method.settings;
-        own.seed += index * NEXT_BATCH;
-        renderer.apply(own);
-        result.points = measureChain(renderer, lastFrame(method), cameraAt_, tick);
-        result.nonFinite += nonFinite(renderer);
-        return result;
-    }
-
-    // How many frames `measure` renders.
-    uint64_t cost(const NamedMethod& method) const
-    {
-        return lastFrame(method) + (needsLaw(method) ? lawFrames(method) : 0);
-    }
-
-  private:
-    bool needsLaw(const NamedMethod& method) const
-    {
-        return passes::lawHolds(method.settings, sameView()) && !passes::accumulates(method.settings.method);
-    }
-
-    passes::Renderer& rendererOf(const std::string& name, const passes::Settings& settings, uint32_t runs)
-    {
-        std::unique_ptr<passes::Renderer>& renderer = renderers_[name];
-        if (!renderer || renderer->runs() != runs) {
-            renderer.reset(); // first: memory
-            renderer = std::make_unique<passes::Renderer>(*emitters_, settings, runs);
-        }
-        return *renderer;
-    }
-
-    std::optional<passes::FrameLaw> law(passes::Renderer& renderer, passes::Settings settings, uint32_t index,
-                                        uint32_t frames, const passes::Tick& tick)
-    {
-        settings = passes::lawSettings(settings);
-        settings.seed = (settings.seed + index * NEXT_BATCH) ^ LAW_SEED;
-        renderer.apply(settings);
-        if (cameraAt_) renderer.setCamera(cameraAt_(0));
-        return measureLaw(renderer, frames, passes::resolvingTargets(settings.method), emission_, tick);
-    }
-
-    static uint64_t nonFinite(passes::Renderer& renderer)
-    {
-        uint64_t sum = 0;
-        for (const auto& [stage, count] : renderer.stats().nonFinite) sum += count;
-        return sum;
-    }
-
-    passes::CameraAt cameraAt_;
-    passes::Settings plain_;
-    std::unique_ptr<passes::Renderer> emitters_; // holds the scene for the others
-    std::map<std::string, std::unique_ptr<passes::Renderer>> renderers_;
-    image::Image emission_;
 };
 
 passes::Settings CorrelateCommand::readSettings() const
@@ -177,25 +71,27 @@ passes::Settings CorrelateCommand::readSettings() const
     return base;
 }
 
-std::vector<NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
+std::vector<passes::NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
 {
-    std::vector<NamedMethod> list = methods.read(base);
-    for (const NamedMethod& method : list) {
+    std::vector<passes::NamedMethod> list = methods.read(base);
+    for (const passes::NamedMethod& method : list) {
         if (method.settings.method == passes::Method::Pt)
             throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);
-        if (lastFrame(method) < 2)
+        if (passes::lastFrame(method.settings) < 2)
             throw UsageError("--methods: \"{}\" renders {} frame; --frames and --max-confidence must be at least 2.",
-                             method.name, lastFrame(method));
+                             method.name, passes::lastFrame(method.settings));
     }
     return list;
 }
 
 // Runs of each batch: --batch or what the device can bind, and what is left in the last. The same on all ranks, however
 // many there are; and with more --runs the full batches stay what they were.
-std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const std::vector<NamedMethod>& list) const
+std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu,
+                                                 const std::vector<passes::NamedMethod>& list) const
 {
     uint32_t most = batch;
-    for (const NamedMethod& method : list) most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
+    for (const passes::NamedMethod& method : list)
+        most = std::min(most, passes::maxRuns(gpu.limits(), method.settings));
     std::vector<uint32_t> sizes;
     for (uint32_t left = runs; most >= MIN_BATCH && left > 0; left -= sizes.back())
         sizes.push_back(std::min(left, most));
@@ -215,7 +111,7 @@ std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu, const s
 int CorrelateCommand::run() const
 {
     const passes::Settings base = readSettings();
-    const std::vector<NamedMethod> list = readMethods(base);
+    const std::vector<passes::NamedMethod> list = readMethods(base);
     NamedFiles files;
     for (const char* file : {"index.html", "correlate.csv", "settings.json"})
         files.writes("--output", std::filesystem::path(output) / file);
@@ -232,70 +128,71 @@ int CorrelateCommand::run() const
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
     for (const auto& fact : motion.toText()) facts.push_back(fact);
-    for (const NamedMethod& method : list) facts.emplace_back("method " + method.name, passes::hash(method.settings));
+    for (const passes::NamedMethod& method : list)
+        facts.emplace_back("method " + method.name, passes::hash(method.settings));
     const scene::Scene world = openScene(scene, base, progress);
     const passes::CameraAt cameraAt = motion.read(world, base);
 
-    const CorrelationStore store(output);
+    const passes::CorrelationStore store(output);
     if (processes.index() == 0) store.open(facts, resume);
     processes.barrier();
     if (processes.index() > 0) store.open(facts, true); // where directories are not shared, each has its own
     facts.emplace_back("runs", std::to_string(runs));   // a batch is the same however many there are
     facts.emplace_back("batches", std::to_string(sizes.size()));
-    std::vector<CorrelationBatch> batches = store.load(sizes);
+    std::vector<passes::CorrelationBatch> batches = store.load(sizes);
+
+    passes::Correlator correlator(
+        std::make_unique<passes::Renderer>(gpu, world, passes::emissionSettings(base),
+                                           [&](double fraction) { progress.show("Building the BVH", fraction, 1); }),
+        base, list, cameraAt);
+    progress.clear();
 
     // What this process has to do: items in the order of batches, dealt out in turns.
     struct Item {
         uint32_t index;
-        const NamedMethod* method; // null: the path tracer
+        size_t subject;
     };
-    Correlator correlator(gpu, world, base, cameraAt,
-                          [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
-    progress.clear();
-    uint32_t plainFrames = 0;
-    for (const NamedMethod& method : list) plainFrames = std::max(plainFrames, lawFrames(method));
-    const auto cost = [&](const Item& item) { return item.method ? correlator.cost(*item.method) : plainFrames; };
     std::vector<Item> items;
     uint64_t turn = 0, frames = 0;
     for (uint32_t index = 0; index < sizes.size(); ++index)
-        for (size_t m = 0; m <= list.size(); ++m) {
-            const Item item{index, m == 0 ? nullptr : &list[m - 1]};
-            const std::string name = item.method ? item.method->name : PATH_TRACER;
-            const bool done = std::ranges::any_of(
-                batches, [&](const CorrelationBatch& b) { return b.index == index && b.method == name; });
+        for (size_t i = 0; i < correlator.subjects().size(); ++i) {
+            const passes::Correlator::Subject& subject = correlator.subjects()[i];
+            const bool done = std::ranges::any_of(batches, [&](const passes::CorrelationBatch& b) {
+                return b.index == index && b.method == subject.name;
+            });
             if (turn++ % processes.count() != processes.index() || done) continue;
-            items.push_back(item);
-            frames += cost(item);
+            items.push_back({index, i});
+            frames += subject.lawFrames + subject.chainFrames;
         }
 
     const Interrupt interrupt;
     const auto start = std::chrono::steady_clock::now();
     uint64_t rendered = 0;
-    const passes::Tick tick = [&] {
-        progress.show("Correlating", double(++rendered), double(frames), "frames");
-        return !interrupt.requested();
-    };
     for (const Item& item : items) {
         const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (item.index > 0 && base.seconds > 0 && elapsed >= base.seconds) break;
-        batches.push_back(item.method ? correlator.measure(*item.method, item.index, sizes[item.index], tick)
-                                      : correlator.measurePathTracer(item.index, sizes[item.index], plainFrames, tick));
+        correlator.begin(item.subject, item.index, sizes[item.index]);
+        do {
+            correlator.step();
+            progress.show("Correlating", double(++rendered), double(frames), "frames");
+        } while (!correlator.complete() && !interrupt.requested());
+        batches.push_back(correlator.batch());
         if (interrupt.requested()) break;
         store.save(batches.back());
     }
     progress.clear();
 
     std::vector<Bytes> records;
-    for (const CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
-    Correlation correlation{.scene = scene.name,
-                            .moving = bool(cameraAt),
-                            .sameView = correlator.sameView(),
-                            .partial = interrupt.requested(),
-                            .width = base.width,
-                            .height = base.height,
-                            .runs = runs};
+    for (const passes::CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
+    passes::Correlation correlation{.scene = scene.name,
+                                    .moving = bool(cameraAt),
+                                    .sameView = correlator.sameView(),
+                                    .partial = interrupt.requested(),
+                                    .width = base.width,
+                                    .height = base.height,
+                                    .runs = runs};
     batches.clear();
-    for (const Bytes& record : processes.gather(records)) batches.push_back(fromBytes(record));
+    for (const Bytes& record : processes.gather(records)) batches.push_back(passes::fromBytes(record));
     if (processes.index() > 0) return correlation.partial ? Interrupt::exitCode() : 0;
     evaluate(correlation, list, std::move(batches));
     std::string command = commandLine();

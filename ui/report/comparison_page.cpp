@@ -5,7 +5,6 @@
 #include "ui/report/crops.h"
 #include "ui/report/heat_map.h"
 #include "ui/report/page.h"
-#include "ui/report/viewer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,34 +18,10 @@ namespace ui
 namespace
 {
 
+using Json = nlohmann::json;
+
 constexpr int CROP_SIZE = 48, CROP_COUNT = 3; // pixels squared; per picture
 constexpr int CROP_SHOWN = 240;               // pixels on the screen
-
-constexpr const char* STYLE = R"(<style>
-.maps { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 0 1rem; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(24rem, 1fr)); gap: 0 1rem; }
-.maps img, .pictures img { width: 100%; image-rendering: pixelated; }
-.crops { display: flex; flex-wrap: wrap; gap: .3rem 1rem; } .crops figure { margin: .3rem 0; }
-.crops img { image-rendering: pixelated; border: 1px solid #aab3c5; }
-.scale { white-space: nowrap; }
-</style>
-)";
-
-constexpr const char* MEANINGS =
-    "MSE, relative MSE (x - r)² / (r² + 0.01) and MAPE |x - r| / (|r| + 0.01) are of linear RGB. PSNR (peak 1), SSIM "
-    "(11x11 Gaussian window) and FLIP (LDR-FLIP, 67 pixels per degree; 0 cannot be seen, 1 is green for blue) are of "
-    "c/(c+1), what a screen shows. Below 0, where the viewer shows black, PSNR is of c/(1-c); SSIM and FLIP compare "
-    "what "
-    "is below 0 as a picture of its own, and the worse of a pixel's two counts. Luma and chroma are the squared errors "
-    "of "
-    "Y and of Co and Cg. Mean ratio is the sum of a channel over the reference's. HDR-FLIP is not computed.";
-
-std::string figure(const std::vector<std::byte>& png, const std::string& captionHtml, int shownWidth = 0)
-{
-    const std::string width = shownWidth > 0 ? fmt::format(" width=\"{}\"", shownWidth) : "";
-    return fmt::format("<figure><img src=\"{}\" alt=\"\"{}><figcaption>{}</figcaption></figure>\n", pngAddress(png),
-                       width, captionHtml);
-}
 
 // The value that all but one in a thousand pixels stay below; above 0.
 double scaleOf(const image::Plane& plane)
@@ -81,64 +56,64 @@ image::Plane relativeDifferenceOf(const image::Image& reference, const image::Im
     return result;
 }
 
-// All of them at a glance; the first is the reference.
-void addPictures(Page& page, const std::vector<ViewerPicture>& shown, const std::vector<ComparedPicture>& pictures)
+// All of them at a glance, and in the viewer; the first is the reference.
+Json picturesOf(const ComparedPicture& reference, const std::vector<ComparedPicture>& pictures)
 {
-    std::string html = figure(shown.front().png, escapeHtml(shown.front().name) + ", the reference");
-    for (size_t i = 0; i < pictures.size(); ++i)
-        html += figure(shown[i + 1].png,
-                       fmt::format("{}: PSNR {:.2f} dB, relative MSE {:.3g}", escapeHtml(pictures[i].file),
-                                   pictures[i].metrics.psnr, pictures[i].metrics.relmse));
-    page.raw("<div class=\"pictures\">\n" + html + "</div>\n");
+    Json list = Json::array();
+    const auto add = [&](const ComparedPicture& picture, const std::string& caption) {
+        const size_t index = list.size();
+        list.push_back({{"index", std::to_string(index)},
+                        {"key", index < 10 ? std::to_string(index) : ""},
+                        {"name", picture.file},
+                        {"caption", picture.file + caption},
+                        {"png", pngAddress(image::tonemappedPng(picture.loaded.image, {}))}});
+    };
+    add(reference, ", the reference");
+    for (const ComparedPicture& picture : pictures)
+        add(picture,
+            fmt::format(": PSNR {:.2f} dB, relative MSE {:.3g}", picture.metrics.psnr, picture.metrics.relmse));
+    return list;
 }
 
-void addMaps(Page& page, const image::Image& reference, const image::Image& picture, const image::Plane& flip)
+Json cropsOf(const image::Image& reference, const image::Image& picture, const image::Plane& flip)
 {
-    const image::Plane difference = differenceOf(reference, picture),
+    Json list = Json::array();
+    for (const Crop& crop : worstCrops(flip, CROP_SIZE, CROP_COUNT)) {
+        const std::string width = std::to_string(CROP_SHOWN * crop.width / std::max(crop.width, crop.height));
+        const auto view = [&](const char* what, const std::vector<std::byte>& png) -> Json {
+            return {{"what", what}, {"png", pngAddress(png)}, {"width", width}};
+        };
+        list.push_back({{"left", std::to_string(crop.x)},
+                        {"right", std::to_string(crop.x + crop.width - 1)},
+                        {"top", std::to_string(crop.y)},
+                        {"bottom", std::to_string(crop.y + crop.height - 1)},
+                        {"error", fmt::format("{:.3f}", crop.meanError)},
+                        {"views",
+                         {view("reference", image::tonemappedPng(cropped(reference, crop), {})),
+                          view("picture", image::tonemappedPng(cropped(picture, crop), {})),
+                          view("FLIP", heatMapPng(cropped(flip, crop), 0, 1, ColorMap::Magma))}}});
+    }
+    return list;
+}
+
+// Where one of them errs: maps and the worst places.
+Json comparedWith(const image::Image& reference, const ComparedPicture& compared)
+{
+    const image::Image& picture = compared.loaded.image;
+    const image::Plane flip = image::flipErrors(reference, picture), difference = differenceOf(reference, picture),
                        relative = relativeDifferenceOf(reference, picture);
     const double differenceScale = scaleOf(difference);
     const double relativeScale = std::min(scaleOf(relative), 1.0); // fireflies in the dark have no bound
-    page.raw("<div class=\"maps\">\n" +
-             figure(heatMapPng(flip, 0, 1, ColorMap::Magma), "FLIP " + colorBar(ColorMap::Magma, "0", "1")) +
-             figure(heatMapPng(difference, 0, differenceScale, ColorMap::Magma),
-                    "Difference of c/(c+1), mean of the channels " +
-                        colorBar(ColorMap::Magma, "0", fmt::format("{:.3g}", differenceScale))) +
-             figure(heatMapPng(relative, -relativeScale, relativeScale, ColorMap::BlueRed),
-                    "Relative difference, (x - r) / (|r| + 0.01) " +
-                        colorBar(ColorMap::BlueRed, fmt::format("darker, {:.3g}%", -100 * relativeScale),
-                                 fmt::format("+{:.3g}%, brighter", 100 * relativeScale))) +
-             "</div>\n");
-}
-
-void addCrops(Page& page, const image::Image& reference, const image::Image& picture, const image::Plane& flip)
-{
-    for (const Crop& crop : worstCrops(flip, CROP_SIZE, CROP_COUNT)) {
-        page.paragraph(fmt::format("Pixels {} to {} across, {} to {} down: mean FLIP {:.3f}.", crop.x,
-                                   crop.x + crop.width - 1, crop.y, crop.y + crop.height - 1, crop.meanError));
-        const int shown = CROP_SHOWN * crop.width / std::max(crop.width, crop.height);
-        page.raw("<div class=\"crops\">\n" +
-                 figure(image::tonemappedPng(cropped(reference, crop), {}), "reference", shown) +
-                 figure(image::tonemappedPng(cropped(picture, crop), {}), "picture", shown) +
-                 figure(heatMapPng(cropped(flip, crop), 0, 1, ColorMap::Magma), "FLIP", shown) + "</div>\n");
-    }
-}
-
-void addSettings(Page& page, const ComparedPicture& reference, const std::vector<ComparedPicture>& pictures)
-{
-    std::vector<const image::Metadata*> metadata = {&reference.loaded.metadata};
-    std::vector<std::string> header = {"setting", reference.file};
-    for (const ComparedPicture& picture : pictures) {
-        metadata.push_back(&picture.loaded.metadata);
-        header.push_back(picture.file);
-    }
-    const std::vector<std::vector<std::string>> differences = metadataDifferences(metadata);
-    page.heading("Settings that differ");
-    if (std::ranges::all_of(metadata, [](const auto* m) { return m->empty(); }))
-        page.paragraph("The files do not say how they were made.");
-    else if (differences.empty())
-        page.paragraph("None: by what the files say, the pictures were made alike.");
-    else
-        page.table(header, differences);
+    const auto map = [](const image::Plane& plane, double low, double high, ColorMap colors) {
+        return pngAddress(heatMapPng(plane, low, high, colors));
+    };
+    return {{"file", compared.file},
+            {"flip", map(flip, 0, 1, ColorMap::Magma)},
+            {"difference", map(difference, 0, differenceScale, ColorMap::Magma)},
+            {"differenceScale", fmt::format("{:.3g}", differenceScale)},
+            {"relative", map(relative, -relativeScale, relativeScale, ColorMap::BlueRed)},
+            {"relativeScale", fmt::format("{:.3g}", 100 * relativeScale)},
+            {"crops", cropsOf(reference, picture, flip)}};
 }
 
 } // namespace
@@ -185,32 +160,32 @@ std::vector<std::vector<std::string>> metadataDifferences(const std::vector<cons
 std::string comparisonPage(const ComparedPicture& reference, const std::vector<ComparedPicture>& pictures,
                            const std::vector<std::string>& failures, const std::string& command)
 {
-    Page page("Pictures compared with " + reference.file);
-    page.raw(STYLE);
-    for (const std::string& failure : failures) page.verdict(failure);
     std::vector<std::vector<std::string>> rows;
-    std::vector<ViewerPicture> shown = {{reference.file, image::tonemappedPng(reference.loaded.image, {})}};
+    std::vector<std::string> header = {"setting", reference.file}, warnings = reference.loaded.warnings;
+    std::vector<const image::Metadata*> metadata = {&reference.loaded.metadata};
+    Json compared = Json::array();
     for (const ComparedPicture& picture : pictures) {
         rows.push_back(figuresOf(picture));
-        shown.push_back({picture.file, image::tonemappedPng(picture.loaded.image, {})});
+        header.push_back(picture.file);
+        warnings.insert(warnings.end(), picture.loaded.warnings.begin(), picture.loaded.warnings.end());
+        metadata.push_back(&picture.loaded.metadata);
+        compared.push_back(comparedWith(reference.loaded.image, picture));
     }
-    page.table(figureNames(), rows);
-    for (const std::string& warning : reference.loaded.warnings) page.paragraph(warning);
-    for (const ComparedPicture& picture : pictures)
-        for (const std::string& warning : picture.loaded.warnings) page.paragraph(warning);
-    addPictures(page, shown, pictures);
-    page.raw(viewerHtml(shown));
-    for (const ComparedPicture& picture : pictures) {
-        page.heading(picture.file);
-        const image::Plane flip = image::flipErrors(reference.loaded.image, picture.loaded.image);
-        addMaps(page, reference.loaded.image, picture.loaded.image, flip);
-        addCrops(page, reference.loaded.image, picture.loaded.image, flip);
-    }
-    addSettings(page, reference, pictures);
-    page.heading("What the figures are");
-    page.paragraph(MEANINGS);
-    page.provenance({.command = command});
-    return page.html();
+    const std::vector<std::vector<std::string>> differences = metadataDifferences(metadata);
+    const bool unknown = std::ranges::all_of(metadata, [](const auto* m) { return m->empty(); });
+    return fillPage("{{> compare.html}}",
+                    {{"title", "Pictures compared with " + reference.file},
+                     {"verdicts", failures},
+                     {"figures", tableData(figureNames(), rows)},
+                     {"warnings", warnings},
+                     {"pictures", picturesOf(reference, pictures)},
+                     {"sizes", gradientOf(ColorMap::Magma)},
+                     {"signed", gradientOf(ColorMap::BlueRed)},
+                     {"compared", compared},
+                     {"unknown", unknown},
+                     {"alike", !unknown && differences.empty()},
+                     {"differences", differences.empty() ? Json(false) : tableData(header, differences)},
+                     {"provenance", provenanceData({.command = command})}});
 }
 
 } // namespace ui

@@ -14,6 +14,7 @@ namespace ui
 namespace
 {
 
+using Json = nlohmann::json;
 using passes::Lane;
 using passes::Sample;
 using Values = std::vector<double>;
@@ -146,10 +147,9 @@ struct Writer {
         return number(passes::finiteMedian(values));
     }
 
-    void meansTable(Page& page) const
+    Json meansTable() const
     {
         const double error = commonError();
-        page.heading(fmt::format("Means of all frames, after {:.3g} s of each method", seconds));
         std::vector<std::vector<std::string>> rows;
         for (const Lane lane : means) {
             Values done;
@@ -174,22 +174,17 @@ struct Writer {
                                        : number(passes::finiteMedian(times)),
                             meanText(figures.slopes(lane, relmseOf))});
         }
-        page.table({"method", "frames", "ms/frame", "relative MSE", "to pt", "MSE to pt", "chroma MSE to pt", "PSNR dB",
-                    "SSIM", "FLIP", fmt::format("s to {:.3g}", error), "slope"},
-                   rows);
-        page.paragraph(fmt::format(
-            "Medians over {} repeats, 95% intervals in brackets. \"to pt\": the error divided by that of pt "
-            "accumulating "
-            "for the same time; above 1 pt is better. \"s to {:.3g}\": seconds until the relative MSE is down to what "
-            "every method reaches. Slope: of log error against log time over the last decade; -1 is what averaging "
-            "independent frames gives, 0 a plateau.",
-            figures.repeats(), error));
+        const std::string least = fmt::format("{:.3g}", error);
+        Json table = tableData({"method", "frames", "ms/frame", "relative MSE", "to pt", "MSE to pt",
+                                "chroma MSE to pt", "PSNR dB", "SSIM", "FLIP", "s to " + least, "slope"},
+                               rows);
+        table["seconds"] = fmt::format("{:.3g}", seconds);
+        table["error"] = least;
+        return table;
     }
 
-    void singlesTable(Page& page) const
+    Json singlesTable() const
     {
-        page.heading(report.moving ? fmt::format("The last of {} frames of a moving camera", frames)
-                                   : fmt::format("Single frames, after {} of them", frames));
         std::vector<std::vector<std::string>> rows;
         for (const Lane lane : singles) {
             const Values errors = figures.after(lane, relmseOf, frames);
@@ -203,16 +198,9 @@ struct Writer {
                             number(passes::finiteMedian(figures.after(lane, ssimOf, frames)), "{:.3f}"),
                             number(passes::finiteMedian(figures.after(lane, flipOf, frames)), "{:.3f}")});
         }
-        page.table({"method", "ms/frame", "relative MSE", "to a frame of pt", "to pt, same time", "MSE, same time",
-                    "luma MSE, same time", "chroma MSE, same time", "PSNR dB", "SSIM", "FLIP"},
-                   rows);
-        page.paragraph(
-            report.moving
-                ? "\"Same time\": the error divided by that of the path tracer with as many samples a pixel as "
-                  "fit into the time of one frame of the method (its error is its frame's divided by that "
-                  "number, exactly so for independent samples); above 1 pt is better."
-                : "\"Same time\": the error divided by that of pt accumulating for as long as all these frames "
-                  "took; above 1 pt is better. With a resting camera that is what a single frame competes with.");
+        return tableData({"method", "ms/frame", "relative MSE", "to a frame of pt", "to pt, same time",
+                          "MSE, same time", "luma MSE, same time", "chroma MSE, same time", "PSNR dB", "SSIM", "FLIP"},
+                         rows);
     }
 
     std::vector<std::string> verdicts() const
@@ -279,36 +267,6 @@ struct Writer {
                 : "");
     }
 
-    void methodology(Page& page) const
-    {
-        page.heading("How it was measured");
-        page.paragraph(fmt::format(
-            "Methods took turns of a tenth of a second in rotating order after a warm-up, so that a busy machine "
-            "treated "
-            "all alike; {} repeats, each with random numbers of its own. Time is {}. Every comparison is within a "
-            "repeat: "
-            "intervals are Student's t on the logarithms of paired ratios, and where a verdict names several at once "
-            "they "
-            "hold together.",
-            figures.repeats(),
-            figures.deviceClock()
-                ? "the device's own clock, summed over the method's frames (converge.csv also has wall time)"
-                : "wall time of the method's turns: this device has no clock of its own"));
-        page.paragraph(referenceText());
-        page.paragraph(
-            "Relative MSE: mean over pixels and channels of (x - r)² / (r² + 0.01). Chroma MSE: Co² + Cg² of "
-            "the difference in YCoCg, luma MSE: Y². PSNR and SSIM: of c/(c+1) in linear RGB. FLIP: of c/(c+1) on "
-            "an sRGB screen, 67 pixels per degree (Andersson et al. 2020).");
-        uint64_t nonFinite = 0;
-        for (const passes::Repeat& repeat : report.repeats) nonFinite += repeat.nonFinite;
-        page.paragraph(fmt::format("Values that were not finite, all methods and repeats: {}.", nonFinite));
-        if (!report.moving)
-            page.paragraph("With a resting camera, rays through the pixels' centers and no spatial reuse, rgb-restir "
-                           "is progressive "
-                           "accumulation, which pt "
-                           "does more cheaply: it has to earn its cost with spatial reuse and motion.");
-    }
-
     // The corner of the window, a quarter of the picture wide and high, where the methods err most.
     glm::uvec2 worstWindow(const image::Image& reference, glm::uvec2 size) const
     {
@@ -331,28 +289,20 @@ struct Writer {
         return corner;
     }
 
-    void pictures(Page& page) const
+    Json pictures() const
     {
-        if (report.pictures.size() != report.methods.size() || report.references.empty()) return;
+        if (report.pictures.size() != report.methods.size() || report.references.empty()) return false;
         const image::Image& reference = report.references.rbegin()->second.picture;
         const glm::uvec2 size(std::max(reference.width / 4, 1u), std::max(reference.height / 4, 1u));
         const glm::uvec2 corner = worstWindow(reference, size);
-        page.heading("Pictures");
-        page.paragraph(report.moving
-                           ? "The last frame of each method in the first repeat, and the part where they err "
-                             "most; shown as c/(c+1)."
-                           : "What each method had at its end in the first repeat, the mean of its frames, and "
-                             "the part where they err most; shown as c/(c+1).");
-        std::string html = "<div style=\"display:grid;grid-template-columns:2fr 1fr;gap:.5rem 1rem\">\n";
+        Json shown;
         const auto add = [&](const image::Image& picture, const std::string& caption) {
             image::Image crop{.width = size.x, .height = size.y};
             for (uint32_t y = 0; y < size.y; ++y)
                 for (uint32_t x = 0; x < size.x; ++x) crop.pixels.push_back(picture.at(corner.x + x, corner.y + y));
-            for (const image::Image* image : {&picture, static_cast<const image::Image*>(&crop)})
-                html += fmt::format("<figure><img src=\"{}\" alt=\"{}\" style=\"width:100%;image-rendering:pixelated\">"
-                                    "<figcaption>{}</figcaption></figure>\n",
-                                    pngAddress(image::tonemappedPng(*image, {})), escapeHtml(caption),
-                                    escapeHtml(image == &crop ? "detail" : caption));
+            shown.push_back({{"caption", caption},
+                             {"png", pngAddress(image::tonemappedPng(picture, {}))},
+                             {"detail", pngAddress(image::tonemappedPng(crop, {}))}});
         };
         add(reference, "reference");
         for (uint32_t method = 0; method < report.methods.size(); ++method) {
@@ -364,7 +314,7 @@ struct Writer {
                                        figures.seconds(*samples.back()), samples.back()->error.relmse);
             add(report.pictures[method], caption);
         }
-        page.raw(html + "</div>\n");
+        return {{"shown", shown}};
     }
 };
 
@@ -378,19 +328,25 @@ std::vector<std::string> convergeVerdicts(const ConvergeReport& report)
 std::string convergePage(const ConvergeReport& report, const std::vector<NamedPlot>& plots)
 {
     const Writer writer{report};
-    Page page("Error against run time: " + report.scene);
-    for (const std::string& sentence : writer.verdicts()) page.verdict(sentence);
-    page.provenance(report.provenance);
-    if (writer.figures.repeats() > 0) {
-        if (!report.moving) writer.meansTable(page);
-        if (writer.frames > 0) writer.singlesTable(page);
-    }
-    page.heading("Curves");
-    if (plots.empty()) page.paragraph("No curves: gnuplot is not installed (Debian package gnuplot-nox).");
-    for (const NamedPlot& plot : plots) page.plot(plot.svg, plot.caption);
-    writer.pictures(page);
-    writer.methodology(page);
-    return page.html();
+    const bool measured = writer.figures.repeats() > 0;
+    uint64_t nonFinite = 0;
+    for (const passes::Repeat& repeat : report.repeats) nonFinite += repeat.nonFinite;
+    Json curves = Json::array();
+    for (const NamedPlot& plot : plots) curves.push_back({{"svg", inlineSvg(plot.svg)}, {"caption", plot.caption}});
+    return fillPage("{{> converge.html}}",
+                    {{"title", "Error against run time: " + report.scene},
+                     {"verdicts", writer.verdicts()},
+                     {"provenance", provenanceData(report.provenance)},
+                     {"moving", report.moving},
+                     {"repeats", std::to_string(writer.figures.repeats())},
+                     {"frames", std::to_string(writer.frames)},
+                     {"means", measured && !report.moving ? writer.meansTable() : Json(false)},
+                     {"singles", measured && writer.frames > 0 ? writer.singlesTable() : Json(false)},
+                     {"plots", curves},
+                     {"pictures", writer.pictures()},
+                     {"deviceClock", writer.figures.deviceClock()},
+                     {"reference", writer.referenceText()},
+                     {"nonFinite", std::to_string(nonFinite)}});
 }
 
 } // namespace ui

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "passes/race_figures.h"
-#include "passes/reference.h"
+#include "passes/experiments/race_figures.h"
+#include "passes/experiments/reference.h"
 #include "ui/cli/method_list.h"
 #include "ui/report/page.h"
 
@@ -16,7 +16,7 @@ namespace ui
 struct ConvergeReport {
     Provenance provenance;
     std::string scene;
-    std::vector<NamedMethod> methods;
+    std::vector<passes::NamedMethod> methods;
     uint32_t pt = 0;     // which of them is the path tracer that others are compared with
     bool moving = false; // then pictures are single frames
     std::vector<passes::Repeat> repeats;

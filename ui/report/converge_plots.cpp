@@ -2,7 +2,7 @@
 
 #include "ui/report/converge_page.h"
 
-#include "ui/report/csv.h"
+#include "engine/base/csv.h"
 #include "ui/report/plot.h"
 
 #include <fmt/format.h>
@@ -110,7 +110,7 @@ std::string convergeCsv(const ConvergeReport& report)
     const passes::RaceFigures figures(report.repeats);
     for (size_t repeat = 0; repeat < report.repeats.size(); ++repeat)
         for (const passes::Sample& s : report.repeats[repeat].samples) {
-            const NamedMethod& method = report.methods[s.method];
+            const passes::NamedMethod& method = report.methods[s.method];
             const auto texts = passes::toText(method.settings);
             const std::map<std::string, std::string> setting(texts.begin(), texts.end());
             csv.row({report.scene,

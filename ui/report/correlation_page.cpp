@@ -16,6 +16,10 @@ namespace ui
 namespace
 {
 
+using Json = nlohmann::json;
+using passes::Correlation;
+using passes::Curve;
+using passes::CurvePoint;
 using statistics::Estimate;
 
 constexpr uint32_t MAP_WIDTH = 480; // pixels on the page, at least
@@ -82,22 +86,21 @@ Plot plotOf(const Correlation& correlation)
     return plot;
 }
 
-void addCurves(Page& page, const Correlation& correlation)
+Json curvesOf(const Correlation& correlation)
 {
+    Json list = Json::array();
     for (const Curve& curve : correlation.curves) {
-        page.heading(curve.method.name);
-        std::string line;
+        std::string facts;
         if (correlation.sigma2)
-            line += fmt::format("Path tracer's variance per frame σ² = {} ({}). ", text(correlation.sigma2->mean),
-                                intervalText(*correlation.sigma2));
+            facts += fmt::format("Path tracer's variance per frame σ² = {} ({}). ", text(correlation.sigma2->mean),
+                                 intervalText(*correlation.sigma2));
         if (curve.plateau && passes::accumulates(curve.method.settings.method))
-            line += "Plateau P = 0: every channel has a reservoir of its own. ";
+            facts += "Plateau P = 0: every channel has a reservoir of its own. ";
         else if (curve.plateau)
-            line += fmt::format("Plateau P = {} ({}). ", text(curve.plateau->mean), intervalText(*curve.plateau));
+            facts += fmt::format("Plateau P = {} ({}). ", text(curve.plateau->mean), intervalText(*curve.plateau));
         if (const auto cross = crossover(correlation, curve))
-            line += fmt::format("Crossover M* = σ²/P = {} ({:.3g} to {:.3g}). ",
-                                text(correlation.sigma2->mean / curve.plateau->mean), cross->low, cross->high);
-        if (!line.empty()) page.paragraph(line);
+            facts += fmt::format("Crossover M* = σ²/P = {} ({:.3g} to {:.3g}). ",
+                                 text(correlation.sigma2->mean / curve.plateau->mean), cross->low, cross->high);
         std::vector<std::vector<std::string>> rows;
         for (const CurvePoint& point : curve.points) {
             const bool measured = point.runs > 0;
@@ -108,8 +111,12 @@ void addCurves(Page& page, const Correlation& correlation)
                             measured ? text(point.variance.mean) : "–",
                             measured ? fmt::format("{} x {}", point.runs, point.pixels) : "–"});
         }
-        page.table({"M", "measured", "95% interval", "predicted", "z", "variance of frame M", "runs x pixels"}, rows);
+        Json& section = list.emplace_back(tableData(
+            {"M", "measured", "95% interval", "predicted", "z", "variance of frame M", "runs x pixels"}, rows));
+        section["method"] = curve.method.name;
+        section["facts"] = facts;
     }
+    return list;
 }
 
 // Enlarged so that pixels can be seen, and scaled so that most of it lies within what a screen shows.
@@ -128,37 +135,39 @@ image::Image shown(const std::vector<glm::dvec3>& values, uint32_t width, uint32
     return picture;
 }
 
-std::vector<std::byte> pngOf(const std::filesystem::path& file, const image::Image& picture)
+// With the files that it names, written into the directory.
+Json floorsOf(const Correlation& correlation, const std::filesystem::path& directory)
 {
-    image::write(file, picture, {});
-    return files::read(file);
-}
-
-void addFloor(Page& page, const Curve& curve, const Correlation& correlation, const std::filesystem::path& directory)
-{
-    if (curve.floor.empty() || passes::accumulates(curve.method.settings.method)) return;
-    std::string name = "color-noise-floor-";
-    for (const char c : curve.method.name) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
-    image::Image exr{.width = correlation.width, .height = correlation.height};
-    std::vector<glm::dvec3> deviation;
-    for (const glm::dvec3& value : curve.floor) {
-        exr.pixels.emplace_back(value);
-        deviation.push_back(glm::sqrt(glm::max(value, glm::dvec3(0)))); // an estimate of 0 may fall below
+    Json list = Json::array();
+    for (const Curve& curve : correlation.curves) {
+        if (curve.floor.empty() || passes::accumulates(curve.method.settings.method)) continue;
+        std::string name = "color-noise-floor-";
+        for (const char c : curve.method.name)
+            name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+        image::Image exr{.width = correlation.width, .height = correlation.height};
+        std::vector<glm::dvec3> deviation;
+        for (const glm::dvec3& value : curve.floor) {
+            exr.pixels.emplace_back(value);
+            deviation.push_back(glm::sqrt(glm::max(value, glm::dvec3(0)))); // an estimate of 0 may fall below
+        }
+        image::write(directory / (name + ".exr"), exr, {{"scene", correlation.scene}, {"method", curve.method.name}});
+        const auto png = [&](const std::string& file, const std::vector<glm::dvec3>& values) {
+            image::write(directory / file, shown(values, correlation.width, correlation.height), {});
+            return pngAddress(files::read(directory / file));
+        };
+        const std::string scratch = name + "-picture.png";
+        list.push_back(
+            {{"method", curve.method.name},
+             {"file", name},
+             {"maps",
+              {{{"png", png(name + ".png", deviation)},
+                {"caption", "√P, scaled so that 98% of the pixels lie below half brightness."}},
+               {{"png", png(scratch, curve.mean)},
+                {"caption",
+                 "The picture itself, likewise: the mean of all frames, without what is seen directly."}}}}});
+        std::filesystem::remove(directory / scratch);
     }
-    image::write(directory / (name + ".exr"), exr, {{"scene", correlation.scene}, {"method", curve.method.name}});
-
-    page.heading("Color-noise floor of " + curve.method.name);
-    page.paragraph(
-        "What no history removes: √P by pixel and channel, the standard deviation that is left when one path, "
-        "chosen by luminance out of all history, colors the pixel. Bright pixels are where reservoirs of their "
-        "own pay for channels; the hue says which channel is noisy. P itself is in " +
-        name + ".exr.");
-    page.picture(pngOf(directory / (name + ".png"), shown(deviation, correlation.width, correlation.height)),
-                 "√P, scaled so that 98% of the pixels lie below half brightness.");
-    const std::filesystem::path scratch = directory / (name + "-picture.png");
-    page.picture(pngOf(scratch, shown(curve.mean, correlation.width, correlation.height)),
-                 "The picture itself, likewise: the mean of all frames, without what is seen directly.");
-    std::filesystem::remove(scratch);
+    return list;
 }
 
 } // namespace
@@ -240,37 +249,20 @@ void writeCorrelation(const std::filesystem::path& directory, const Correlation&
                       const Provenance& provenance)
 {
     writeText(directory / "correlate.csv", csvOf(correlation));
-    Page page("Autocovariance: " + correlation.scene);
-    for (const std::string& sentence : verdictsOf(correlation)) page.verdict(sentence);
-    if (const std::optional<std::string> svg = drawSvg(plotOf(correlation))) {
-        writeText(directory / "autocovariance.svg", *svg);
-        page.plot(*svg, "Points: measured, with 95% intervals. Dashed: what the law predicts from single frames.");
-    } else {
-        page.paragraph("There is no plot: gnuplot is not installed (Debian package gnuplot-nox).");
-    }
-    page.provenance(provenance);
-    for (const Curve& curve : correlation.curves) addFloor(page, curve, correlation, directory);
-    addCurves(page, correlation);
-    page.heading("How this was measured");
-    page.paragraph(fmt::format(
-        "Independent runs of {} x {} pixels, {} asked for, rendered side by side in batches. For each pixel and "
-        "channel the "
-        "sample covariance over the runs of a batch between frame M-1 (x) and frame M (y), about their means over the "
-        "runs; then the mean over pixels, channels and batches. One run serves every M, since the cap M_c does not "
-        "bind "
-        "before frame M_c + 1, so neighboring points are not independent. Intervals: jackknife, leaving one run out. "
-        "{}",
-        correlation.width, correlation.height, correlation.runs,
-        correlation.moving
-            ? "The camera moves, so a pixel of frame M pairs with the pixel of frame M-1 that saw the same point; "
-              "pixels "
-              "without one do not count. The means over runs are each frame's own reference."
-            : "Predicted: V/M + (1 - 2/M) P, from single frames without reuse and with random numbers of their own, "
-              "where "
-              "V is the variance of a frame and P = E[s] E[q] - E[C]², s the weight sum and E[q] = E[C²/s]. For RGB "
-              "ReSTIR V = σ² and P = 0."));
-    page.paragraph(fmt::format("Values that were not finite: {}.", correlation.nonFinite));
-    writeText(directory / "index.html", page.html());
+    const std::optional<std::string> svg = drawSvg(plotOf(correlation));
+    if (svg) writeText(directory / "autocovariance.svg", *svg);
+    writeText(directory / "index.html",
+              fillPage("{{> correlate.html}}", {{"title", "Autocovariance: " + correlation.scene},
+                                                {"verdicts", verdictsOf(correlation)},
+                                                {"plot", svg ? inlineSvg(*svg) : ""},
+                                                {"provenance", provenanceData(provenance)},
+                                                {"floors", floorsOf(correlation, directory)},
+                                                {"curves", curvesOf(correlation)},
+                                                {"width", std::to_string(correlation.width)},
+                                                {"height", std::to_string(correlation.height)},
+                                                {"runs", std::to_string(correlation.runs)},
+                                                {"moving", correlation.moving},
+                                                {"nonFinite", std::to_string(correlation.nonFinite)}}));
 }
 
 } // namespace ui

@@ -1,7 +1,6 @@
 #include "ui/report/heat_map.h"
 
 #include "engine/image/codecs.h"
-#include "ui/report/page.h"
 
 #include <algorithm>
 #include <array>
@@ -41,14 +40,12 @@ std::vector<std::byte> heatMapPng(const image::Plane& plane, double low, double 
     return image::encodePng(uint32_t(plane.width), uint32_t(plane.height), rgb, {});
 }
 
-std::string colorBar(ColorMap map, const std::string& lowLabel, const std::string& highLabel)
+std::string gradientOf(ColorMap map)
 {
     std::string colors;
     for (const auto& [r, g, b] : stopsOf(map))
         colors += fmt::format("{}rgb({},{},{})", colors.empty() ? "" : ",", r, g, b);
-    return fmt::format("<span class=\"scale\">{} <span style=\"display:inline-block;width:10rem;height:.8em;"
-                       "background:linear-gradient(90deg,{})\"></span> {}</span>",
-                       escapeHtml(lowLabel), colors, escapeHtml(highLabel));
+    return colors;
 }
 
 } // namespace ui

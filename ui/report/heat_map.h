@@ -18,7 +18,7 @@ enum class ColorMap {
 // PNG bytes; values below `low` and above `high` get the end colors.
 std::vector<std::byte> heatMapPng(const image::Plane& plane, double low, double high, ColorMap map);
 
-// The same colors as a bar between two labels, in HTML.
-std::string colorBar(ColorMap map, const std::string& lowLabel, const std::string& highLabel);
+// The same colors from low to high, as stops of a gradient in CSS.
+std::string gradientOf(ColorMap map);
 
 } // namespace ui

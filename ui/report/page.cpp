@@ -8,6 +8,9 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+
+#include <generated_pages.h>
 
 namespace ui
 {
@@ -15,19 +18,25 @@ namespace ui
 namespace
 {
 
-constexpr const char* STYLE = R"(
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #1d2330; background: #fff; }
-h1 { font-size: 1.7rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; border-bottom: 1px solid #d5dae3; }
-table { border-collapse: collapse; margin: 1rem 0; display: block; overflow-x: auto; }
-th, td { padding: .25rem .8rem; border-bottom: 1px solid #e4e8ef; text-align: left; white-space: nowrap; }
-th { background: #f3f5f9; } td.number { text-align: right; font-variant-numeric: tabular-nums; }
-figure { margin: 1rem 0; } figure img, figure svg { max-width: 100%; height: auto; } figcaption { color: #566074; font-size: .9rem; }
-.verdict { background: #eef4ff; border-left: 4px solid #3a6fd8; padding: .5rem 1rem; }
-.partial { background: #fff3e0; border-left: 4px solid #d98200; padding: .5rem 1rem; }
-code, pre { font: .85rem/1.4 ui-monospace, monospace; background: #f3f5f9; }
-pre { padding: .6rem .8rem; overflow-x: auto; white-space: pre-wrap; word-break: break-all; }
-details { margin: .5rem 0; } summary { cursor: pointer; }
-)";
+using Json = nlohmann::json;
+using kainjow::mustache::data;
+
+data dataOf(const Json& json)
+{
+    if (json.is_object()) {
+        data object;
+        for (const auto& [name, value] : json.items()) object[name] = dataOf(value);
+        return object;
+    }
+    if (json.is_array()) {
+        kainjow::mustache::list list;
+        for (const Json& value : json) list.push_back(dataOf(value));
+        return list;
+    }
+    if (json.is_boolean()) return json.get<bool>();
+    const std::string& text = json.get_ref<const std::string&>();
+    return text.empty() ? data(false) : data(text);
+}
 
 bool isNumber(const std::string& text)
 {
@@ -46,20 +55,25 @@ std::string shellQuoted(const std::string& argument)
 
 } // namespace
 
-std::string escapeHtml(const std::string& text)
+std::string fillPage(const std::string& html, const Json& values)
 {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-        case '&': result += "&amp;"; break;
-        case '<': result += "&lt;"; break;
-        case '>': result += "&gt;"; break;
-        case '"': result += "&quot;"; break;
-        case '\'': result += "&#39;"; break;
-        default: result += c;
-        }
+    data all = dataOf(values);
+    for (const auto& [name, text] : EMBEDDED_PAGES) all[name] = text;
+    kainjow::mustache::mustache page(html);
+    const std::string filled = page.render(all);
+    CHECK_EQ(page.error_message(), "");
+    return filled;
+}
+
+Json tableData(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows)
+{
+    Json table = {{"header", header}, {"rows", Json::array()}};
+    for (const std::vector<std::string>& row : rows) {
+        CHECK_EQ(row.size(), header.size());
+        Json& cells = table["rows"].emplace_back(Json::array());
+        for (const std::string& cell : row) cells.push_back({{"text", cell}, {"number", isNumber(cell)}});
     }
-    return result;
+    return table;
 }
 
 std::string pngAddress(std::span<const std::byte> png)
@@ -76,84 +90,24 @@ std::string pngAddress(std::span<const std::byte> png)
     return result;
 }
 
-Page::Page(std::string title) : title_(std::move(title)) {}
-
-void Page::heading(const std::string& text)
+std::string inlineSvg(const std::string& svg)
 {
-    body_ += "<h2>" + escapeHtml(text) + "</h2>\n";
+    return svg.substr(std::min(svg.find("<svg"), svg.size()));
 }
 
-void Page::paragraph(const std::string& text)
+Json provenanceData(const Provenance& provenance)
 {
-    body_ += "<p>" + escapeHtml(text) + "</p>\n";
-}
-
-void Page::verdict(const std::string& text)
-{
-    body_ += "<p class=\"verdict\">" + escapeHtml(text) + "</p>\n";
-}
-
-void Page::table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows)
-{
-    body_ += "<table>\n<tr>";
-    for (const std::string& cell : header) body_ += "<th>" + escapeHtml(cell) + "</th>";
-    body_ += "</tr>\n";
-    for (const std::vector<std::string>& row : rows) {
-        CHECK_EQ(row.size(), header.size());
-        body_ += "<tr>";
-        for (const std::string& cell : row)
-            body_ += (isNumber(cell) ? "<td class=\"number\">" : "<td>") + escapeHtml(cell) + "</td>";
-        body_ += "</tr>\n";
-    }
-    body_ += "</table>\n";
-}
-
-void Page::plot(const std::string& svg, const std::string& caption)
-{
-    body_ += "<figure>" + svg.substr(std::min(svg.find("<svg"), svg.size())) + "<figcaption>" + escapeHtml(caption) +
-             "</figcaption></figure>\n";
-}
-
-void Page::picture(std::span<const std::byte> png, const std::string& caption)
-{
-    body_ += "<figure><img src=\"" + pngAddress(png) + "\" alt=\"" + escapeHtml(caption) + "\"><figcaption>" +
-             escapeHtml(caption) + "</figcaption></figure>\n";
-}
-
-void Page::provenance(const Provenance& provenance)
-{
-    if (provenance.partial)
-        body_ +=
-            "<p class=\"partial\">Partial: the run was stopped before its end; the figures are of what it did.</p>\n";
-    const auto now = fmt::gmtime(std::chrono::system_clock::now());
-    const std::string where = provenance.scene.empty()
-                                  ? ""
-                                  : fmt::format("Scene <b>{}</b> on {} ({}); ", escapeHtml(provenance.scene),
-                                                escapeHtml(provenance.device), escapeHtml(provenance.driver));
-    body_ += fmt::format("<p>{}Trichrome {}, {:%Y-%m-%d %H:%M} UTC.</p>\n<pre>{}</pre>\n", where, version(), now,
-                         escapeHtml(provenance.command));
-    if (provenance.settings.empty()) return;
-    body_ += "<details><summary>All settings</summary>\n";
     std::vector<std::vector<std::string>> rows;
     for (const auto& [name, value] : provenance.settings) rows.push_back({name, value});
-    table({"setting", "value"}, rows);
-    body_ += "</details>\n";
-}
-
-void Page::raw(const std::string& html)
-{
-    body_ += html;
-}
-
-std::string Page::html() const
-{
-    return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-        "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n"
-        "</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n</html>\n",
-        escapeHtml(title_), STYLE, body_);
+    const auto now = fmt::gmtime(std::chrono::system_clock::now());
+    return {{"partial", provenance.partial},
+            {"scene", provenance.scene},
+            {"device", provenance.device},
+            {"driver", provenance.driver},
+            {"version", version()},
+            {"date", fmt::format("{:%Y-%m-%d %H:%M}", now)},
+            {"command", provenance.command},
+            {"settings", rows.empty() ? Json(false) : tableData({"setting", "value"}, rows)}};
 }
 
 std::string commandLine()

@@ -1,6 +1,6 @@
 #pragma once
-// A report as one HTML file that needs nothing else: style, plots and pictures are inside, so it works offline. Its
-// content security policy keeps it from loading anything.
+// A report as one HTML file that needs nothing else: style, script, plots and pictures are inside, so it works offline.
+// Its content security policy keeps it from loading anything.
 
 #include <cstddef>
 #include <span>
@@ -8,16 +8,22 @@
 #include <utility>
 #include <vector>
 
-#include "passes/settings.h"
+#include <nlohmann/json.hpp>
 
 namespace ui
 {
 
-// Text as it appears in HTML, also within quotes of an attribute.
-std::string escapeHtml(const std::string& text);
+// Fills a template in the language mustache, which may name any file of assets/pages as a partial, with texts (escaped
+// where it says {{}}), booleans, lists and objects. An empty text is false.
+std::string fillPage(const std::string& html, const nlohmann::json& data);
+
+// For table.html. Numbers are aligned to the right. Every row has as many cells as the header.
+nlohmann::json tableData(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
 
 // "data:image/png;base64,..." of a PNG file's bytes.
 std::string pngAddress(std::span<const std::byte> png);
+
+std::string inlineSvg(const std::string& svg); // without what stands before its element in a file
 
 // Where figures come from, for whoever wants them again.
 struct Provenance {
@@ -27,27 +33,7 @@ struct Provenance {
     std::vector<std::pair<std::string, std::string>> settings; // passes::toText, and what else decides the figures
     bool partial = false;                                      // stopped before the end
 };
-
-class Page
-{
-  public:
-    explicit Page(std::string title);
-
-    void heading(const std::string& text);
-    void paragraph(const std::string& text);
-    void verdict(const std::string& text); // a sentence that stands out
-    // Numbers are aligned to the right. Every row has as many cells as the header.
-    void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-    void plot(const std::string& svg, const std::string& caption);
-    void picture(std::span<const std::byte> png, const std::string& caption);
-    void provenance(const Provenance& provenance); // with version and date
-    void raw(const std::string& html);             // already escaped
-
-    std::string html() const;
-
-  private:
-    std::string title_, body_;
-};
+nlohmann::json provenanceData(const Provenance& provenance); // for provenance.html; with version and date
 
 // The process's own command line, quoted for a POSIX shell.
 std::string commandLine();

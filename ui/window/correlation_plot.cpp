@@ -1,6 +1,5 @@
 #include "ui/window/plots.h"
 
-#include "passes/autocovariance.h"
 #include "ui/window/axes.h"
 
 namespace ui
@@ -9,23 +8,23 @@ namespace ui
 namespace
 {
 
-void drawCurve(ImDrawList& list, const Axes& axes, const CorrelationCurve& curve, ImU32 color, float scale)
+void drawCurve(ImDrawList& list, const Axes& axes, const passes::Curve& curve, ImU32 color, float scale)
 {
     std::vector<ImVec2> measured;
-    for (const CorrelationCurve::Point& point : curve.points) {
-        if (!(point.measured.mean > 0)) continue;
-        const ImVec2 at = axes.at(point.frame, point.measured.mean);
+    for (const passes::CurvePoint& point : curve.points) {
+        if (!(point.autocovariance.mean > 0)) continue;
+        const ImVec2 at = axes.at(point.frame, point.autocovariance.mean);
         measured.push_back(at);
         list.AddCircleFilled(at, 3 * scale, color);
-        const statistics::Interval interval = statistics::meanInterval(point.measured);
+        const statistics::Interval interval = statistics::meanInterval(point.autocovariance);
         if (interval.low > 0) // a bar without a lower end says little on a logarithm
             list.AddLine(axes.at(point.frame, interval.low), axes.at(point.frame, interval.high), color, scale);
     }
     list.AddPolyline(measured.data(), int(measured.size()), color, ImDrawFlags_None, 1.5f * scale);
     for (size_t i = 1; i < curve.points.size(); ++i) { // dashes: half of each piece
-        const CorrelationCurve::Point &a = curve.points[i - 1], &b = curve.points[i];
-        if (!a.predicted || !b.predicted || !(*a.predicted > 0) || !(*b.predicted > 0)) continue;
-        const ImVec2 from = axes.at(a.frame, *a.predicted), to = axes.at(b.frame, *b.predicted);
+        const passes::CurvePoint &a = curve.points[i - 1], &b = curve.points[i];
+        if (!a.law || !b.law || !(a.law->mean > 0) || !(b.law->mean > 0)) continue;
+        const ImVec2 from = axes.at(a.frame, a.law->mean), to = axes.at(b.frame, b.law->mean);
         constexpr int DASHES = 6;
         for (int dash = 0; dash < DASHES; ++dash) {
             const float t = float(dash) / DASHES, u = (float(dash) + 0.5f) / DASHES;
@@ -39,18 +38,19 @@ void drawCurve(ImDrawList& list, const Axes& axes, const CorrelationCurve& curve
 std::string sentenceOf(const WindowState& state, Side side)
 {
     const char* name = side == A ? "A" : "B";
-    const std::shared_ptr<const CorrelationCurve>& curve = state.findings->curves[side];
+    const std::shared_ptr<const CorrelationCurve>& known = state.findings->curves[side];
     const passes::Settings settings = settingsOf(state.order, side);
     if (settings.method == passes::Method::Pt) return fmt::format("{}: the path tracer's frames are independent", name);
     if (!settings.temporal) return fmt::format("{}: reuse in time is off, so frames are independent", name);
     if (settings.maxConfidence < 2) return fmt::format("{}: M_c is 1, so there is no history", name);
-    if (!curve || curve->points.empty()) return fmt::format("{}: no point yet", name);
-    std::string text = fmt::format("{}: {} x {} pixels, {} runs, {} batches done", name, curve->width, curve->height,
-                                   curve->runs, curve->batches);
-    if (curve->plateau) text += fmt::format("; levels off at P = {:.2g}", *curve->plateau);
+    if (!known || known->curve.points.empty()) return fmt::format("{}: no point yet", name);
+    const passes::Curve& curve = known->curve;
+    std::string text = fmt::format("{}: {} x {} pixels, {} runs, {} batches done", name, known->width, known->height,
+                                   known->runs, known->batches);
+    if (curve.plateau) text += fmt::format("; levels off at P = {:.2g}", curve.plateau->mean);
     if (settings.spatial > 0)
         text += "; no law is known with reuse in space";
-    else if (!curve->plateau && curve->points.size() > 1 && !passes::accumulates(settings.method))
+    else if (!curve.plateau && curve.points.size() > 1 && !passes::accumulates(settings.method))
         text += "; no law is known where pixels see other points in each frame";
     return text;
 }
@@ -76,12 +76,12 @@ void drawCorrelationPlot(WindowState& state)
         }
         ImGui::TextColored(colors::GRAY, "Solid: measured, with 95%% intervals. Dashed: predicted by the law.");
         Axes axes;
-        for (const auto& curve : state.findings->curves)
-            for (size_t i = 0; curve && i < curve->points.size(); ++i) {
-                const CorrelationCurve::Point& point = curve->points[i];
+        for (const auto& known : state.findings->curves)
+            for (size_t i = 0; known && i < known->curve.points.size(); ++i) {
+                const passes::CurvePoint& point = known->curve.points[i];
                 axes.x.add(point.frame);
-                axes.y.add(point.measured.mean);
-                axes.y.add(point.predicted.value_or(0));
+                axes.y.add(point.autocovariance.mean);
+                axes.y.add(point.law ? point.law->mean : 0);
             }
         axes.x.widen(1);
         axes.y.widen(1);
@@ -93,8 +93,9 @@ void drawCorrelationPlot(WindowState& state)
             axes.draw(list, "");
             list.PushClipRect(axes.low, axes.high, true);
             for (const Side side : {A, B})
-                if (const auto& curve = state.findings->curves[side])
-                    drawCurve(list, axes, *curve, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]), state.scale);
+                if (const auto& known = state.findings->curves[side])
+                    drawCurve(list, axes, known->curve, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]),
+                              state.scale);
             list.PopClipRect();
         }
     }

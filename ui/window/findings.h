@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/statistics.h"
 #include "engine/image/mean_picture.h"
+#include "passes/experiments/correlation.h"
 #include "ui/window/order.h"
 
 namespace ui
@@ -24,14 +24,8 @@ using ReferencePointer = std::shared_ptr<const Reference>;
 
 // How strongly the frames M-1 and M of a side depend on each other, as `correlate` measures it.
 struct CorrelationCurve {
-    struct Point {
-        uint32_t frame = 0;            // M
-        statistics::Estimate measured; // autocovariance, radiance^2
-        std::optional<double> predicted;
-    };
-    std::vector<Point> points;     // by M
-    std::optional<double> plateau; // P: what no history removes, where the law holds
-    uint32_t batches = 0;          // that are complete
+    passes::Curve curve;  // as far as it is measured
+    uint32_t batches = 0; // that are complete
     uint32_t width = 0, height = 0, runs = 0;
 };
 

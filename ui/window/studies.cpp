@@ -1,8 +1,8 @@
 #include "ui/window/studies.h"
 
-#include "passes/autocovariance.h"
 #include "passes/camera_choice.h"
-#include "passes/reference.h"
+#include "passes/experiments/autocovariance.h"
+#include "passes/experiments/reference.h"
 
 namespace ui
 {
@@ -71,8 +71,7 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
     passes::Settings plain = settingsOf(order, A);
     plain.method = passes::Method::Pt;
     if (order.studies.reference || order.studies.correlation || order.studies.floor) add(plain);
-    plain.maxBounces = 0; // what is seen directly
-    if (order.studies.correlation || order.studies.floor) add(plain);
+    if (order.studies.correlation || order.studies.floor) add(passes::emissionSettings(plain));
     for (const Side side : {A, B}) {
         passes::Settings settings = settingsOf(order, side);
         if (settings.method == passes::Method::Pt || (side == B && !order.rival)) continue;

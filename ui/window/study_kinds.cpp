@@ -2,13 +2,12 @@
 
 #include "ui/window/studies.h"
 
-#include "passes/autocovariance.h"
-#include "passes/reference.h"
+#include "passes/experiments/correlator.h"
+#include "passes/experiments/reference.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -33,17 +32,6 @@ std::unique_ptr<passes::Renderer> siblingOf(const Subject& subject, const passes
     return renderer;
 }
 
-// What a pixel sees directly.
-image::Image emissionOf(const Subject& subject, passes::Settings settings)
-{
-    settings.method = passes::Method::Pt;
-    settings.maxBounces = 0;
-    const auto renderer = siblingOf(subject, settings);
-    renderer->renderFrame();
-    renderer->wait();
-    return renderer->readFrame();
-}
-
 // ---------------------------------------------------------------------------------------------------------- reference
 
 constexpr double BATCH_SECONDS = 0.5; // of rendering, at least, in a batch of a reference
@@ -53,7 +41,7 @@ class ReferenceStudy : public Study
 {
   public:
     explicit ReferenceStudy(const Subject& subject)
-        : settings_(passes::referenceSettings(subject.settings)), renderer_(siblingOf(subject, settings_))
+        : tracer_(siblingOf(subject, passes::referenceSettings(subject.settings)))
     {
         static uint64_t studies = 0; // of one thread
         number_ = ++studies;
@@ -62,85 +50,72 @@ class ReferenceStudy : public Study
     bool step(Findings& findings) override
     {
         const auto start = Clock::now();
-        renderer_->renderFrame();
-        renderer_->wait();
+        if (length_ == 0 && seconds_ >= BATCH_SECONDS) length_ = tracer_.renderer().frameCount() + 1;
+        const bool full = tracer_.step(length_);
+        tracer_.renderer().wait();
         seconds_ += secondsSince(start);
-        const bool full = batchFrames_ > 0 ? renderer_->frameCount() >= batchFrames_ : seconds_ >= BATCH_SECONDS;
-        if (!full) return false;
-        batchFrames_ =
-            renderer_->frameCount(); // batches of equal length, so that their spread says how good the mean is
-        mean_.add(renderer_->readMean());
-        --settings_.seed;
-        renderer_->apply(settings_);
-        renderer_->reset();
-        if (mean_.count() < 2 || double(mean_.count()) < GROWTH * double(published_)) return false;
-        published_ = mean_.count();
+        const image::MeanPicture& mean = tracer_.mean();
+        if (!full || mean.count() < 2 || double(mean.count()) < GROWTH * double(published_)) return false;
+        published_ = mean.count();
         findings.reference = std::make_shared<const Reference>(
-            Reference{.picture = mean_.mean(),
-                      .name = fmt::format("path traced, {} frames", mean_.count() * batchFrames_),
-                      .error = mean_.ownError(),
+            Reference{.picture = mean.mean(),
+                      .name = fmt::format("path traced, {} frames", mean.count() * length_),
+                      .error = mean.ownError(),
                       .converging = number_});
         return true;
     }
 
   private:
-    passes::Settings settings_;
-    std::unique_ptr<passes::Renderer> renderer_;
-    image::MeanPicture mean_;
-    uint64_t number_ = 0, batchFrames_ = 0, published_ = 0;
+    passes::ReferenceTracer tracer_;
+    uint64_t number_ = 0, published_ = 0;
+    uint64_t length_ = 0; // of a batch, in frames; 0: the first is not long enough yet
     double seconds_ = 0;
 };
 
 // -------------------------------------------------------------------------------------------------------- correlation
 
 constexpr uint32_t RUNS = 16;
-constexpr double CHAIN_PIXELS = 64 * 36;  // of a run, at most: statistics need many chains, not a large picture
-constexpr uint32_t LONGEST_CHAIN = 1024;  // frames
-constexpr uint32_t CHAIN_LAW_FRAMES = 64; // of a run and batch
-constexpr uint32_t MOST_BATCHES = 32;     // then it is known well enough
-constexpr uint64_t NEXT_BATCH = 0x9e3779b97f4a7c15u; // between seeds
+constexpr double CHAIN_PIXELS = 64 * 36; // of a run, at most: statistics need many chains, not a large picture
+constexpr uint32_t LONGEST_CHAIN = 1024; // frames
+constexpr uint32_t MOST_BATCHES = 32;    // then it is known well enough
+enum : size_t { PLAIN, METHOD };         // Correlator::subjects()
 
 class CorrelationStudy : public Study
 {
   public:
-    explicit CorrelationStudy(const Subject& subject) : side_(subject.side), settings_(small(subject.settings))
+    explicit CorrelationStudy(const Subject& subject)
+        : side_(subject.side), method_{"", small(subject.settings)},
+          correlator_(siblingOf(subject, passes::emissionSettings(method_.settings)), method_.settings, {method_})
     {
-        curve_.width = settings_.width;
-        curve_.height = settings_.height;
-        curve_.runs = RUNS;
-        chainRenderer_ = siblingOf(subject, settings_, RUNS);
-        if (!passes::lawHolds(settings_, subject.like.scene().viewRepeats(settings_))) return;
-        emission_ = emissionOf(subject, settings_);
-        lawSettings_ = passes::lawSettings(settings_);
-        if (passes::accumulates(settings_.method)) lawSettings_.method = passes::Method::Pt;
-        lawRenderer_ = siblingOf(subject, lawSettings_, RUNS);
+        // The path tracer's law alone is enough where it is the method's.
+        const passes::Settings& s = method_.settings;
+        first_ = passes::lawHolds(s, correlator_.sameView()) && passes::accumulates(s.method) ? PLAIN : METHOD;
+        begin(first_);
     }
 
     bool step(Findings& findings) override
     {
-        if (lawRenderer_ && (!meter_ || meter_->frames() < CHAIN_LAW_FRAMES)) {
-            stepLaw();
-            return false;
+        const bool news = correlator_.step();
+        std::vector<passes::CorrelationBatch> batches;
+        if (news) {
+            batches = finished_;
+            batches.push_back(correlator_.batch());
         }
-        if (!chain_) {
-            passes::Settings settings = settings_;
-            settings.seed += curve_.batches * NEXT_BATCH;
-            chainRenderer_->apply(settings);
-            chain_.emplace(*chainRenderer_);
+        if (correlator_.complete()) {
+            finished_.push_back(correlator_.batch());
+            if (subject_ == METHOD) ++complete_;
+            begin(subject_ == METHOD ? first_ : METHOD);
         }
-        const size_t known = chain_->points().size();
-        chain_->step();
-        const bool news = chain_->points().size() > known;
-        if (news) take(chain_->points().back());
-        if (chain_->frame() >= std::min(settings_.maxConfidence, LONGEST_CHAIN)) {
-            chain_.reset();
-            meter_.reset();
-            ++curve_.batches;
-        }
-        if (news) findings.curves[side_] = std::make_shared<const CorrelationCurve>(curve_);
-        return news;
+        if (!news) return false;
+        passes::Correlation all{.sameView = correlator_.sameView()};
+        evaluate(all, {method_}, std::move(batches));
+        passes::Curve& curve = all.curves.front();
+        std::erase_if(curve.points, [](const passes::CurvePoint& point) { return point.runs == 0; });
+        findings.curves[side_] = std::make_shared<const CorrelationCurve>(
+            CorrelationCurve{std::move(curve), complete_, method_.settings.width, method_.settings.height, RUNS});
+        return true;
     }
-    bool done() const override { return curve_.batches >= MOST_BATCHES; }
+    bool done() const override { return complete_ >= MOST_BATCHES; }
 
   private:
     static passes::Settings small(passes::Settings settings)
@@ -149,57 +124,23 @@ class CorrelationStudy : public Study
         const double scale = std::min(1.0, std::sqrt(CHAIN_PIXELS / pixels));
         settings.width = std::max(uint32_t(scale * settings.width), 1u);
         settings.height = std::max(uint32_t(scale * settings.height), 1u);
+        settings.frames = LONGEST_CHAIN;
         settings.average = false;
         return settings;
     }
 
-    void stepLaw()
+    void begin(size_t subject)
     {
-        if (!meter_) {
-            passes::Settings settings = lawSettings_;
-            settings.seed = ~(settings.seed + curve_.batches * NEXT_BATCH); // none of the chain's
-            lawRenderer_->apply(settings);
-            lawRenderer_->reset();
-            meter_.emplace(RUNS, passes::resolvingTargets(lawSettings_.method), emission_);
-        }
-        lawRenderer_->renderFrame();
-        lawRenderer_->wait();
-        meter_->add(lawRenderer_->readFrame());
-        if (meter_->frames() == CHAIN_LAW_FRAMES) laws_.push_back(meter_->law());
-    }
-
-    void take(const passes::ChainPoint& point)
-    {
-        std::vector<statistics::BatchValue>& values = values_[point.frame];
-        values.push_back(point.autocovariance);
-        CorrelationCurve::Point shown{.frame = point.frame, .measured = statistics::combine(values)};
-        if (!laws_.empty()) {
-            std::vector<statistics::BatchValue> predicted, plateaus;
-            for (const passes::FrameLaw& law : laws_) {
-                predicted.push_back(passes::predictedAutocovariance(law, settings_.color, point.frame));
-                plateaus.push_back(law.plateau);
-            }
-            // The first frame of weighted color would take the path tracer's law.
-            if (point.frame > 2 || settings_.color == passes::Color::Chosen || passes::accumulates(settings_.method))
-                shown.predicted = statistics::combine(predicted).mean;
-            curve_.plateau = statistics::combine(plateaus).mean;
-        }
-        const auto at = std::ranges::find(curve_.points, point.frame, &CorrelationCurve::Point::frame);
-        if (at == curve_.points.end())
-            curve_.points.push_back(shown);
-        else
-            *at = shown;
+        subject_ = subject;
+        correlator_.begin(subject, complete_, RUNS);
     }
 
     Side side_;
-    passes::Settings settings_, lawSettings_;
-    std::unique_ptr<passes::Renderer> chainRenderer_, lawRenderer_; // the second null: the law does not hold
-    image::Image emission_;
-    std::optional<passes::LawMeter> meter_;
-    std::optional<passes::Chain> chain_;
-    std::vector<passes::FrameLaw> laws_;
-    std::map<uint32_t, std::vector<statistics::BatchValue>> values_; // by M
-    CorrelationCurve curve_;
+    passes::NamedMethod method_;
+    passes::Correlator correlator_;
+    size_t first_ = METHOD, subject_ = METHOD; // of a batch; now
+    std::vector<passes::CorrelationBatch> finished_;
+    uint32_t complete_ = 0; // batches of the method
 };
 
 // -------------------------------------------------------------------------------------------------------------- floor
@@ -213,17 +154,17 @@ class FloorStudy : public Study
     {
         if (passes::accumulates(settings_.method)) return; // there is none
         settings_.seed = ~settings_.seed;
-        meter_.emplace(1, passes::resolvingTargets(settings_.method), emissionOf(subject, settings_));
+        const auto emitters = siblingOf(subject, passes::emissionSettings(settings_));
+        emitters->renderFrame();
         renderer_ = siblingOf(subject, settings_);
+        meter_.emplace(*renderer_, emitters->readFrame());
     }
 
     bool step(Findings& findings) override
     {
         Floor floor{.deviation = {.width = settings_.width, .height = settings_.height}};
-        if (renderer_) {
-            renderer_->renderFrame();
-            renderer_->wait();
-            meter_->add(renderer_->readFrame());
+        if (meter_) {
+            meter_->step();
             floor.frames = meter_->frames();
             if (floor.frames < FIRST_FLOOR || floor.frames < GROWTH * shown_) return false;
             for (const glm::dvec3& p : meter_->law().floor)
@@ -233,7 +174,7 @@ class FloorStudy : public Study
             floor.deviation.pixels.resize(size_t{settings_.width} * settings_.height);
         }
         shown_ = floor.frames;
-        done_ = !renderer_ || shown_ >= MOST_FLOOR;
+        done_ = !meter_ || shown_ >= MOST_FLOOR;
         findings.floors[side_] = std::make_shared<const Floor>(std::move(floor));
         return true;
     }
@@ -242,8 +183,8 @@ class FloorStudy : public Study
   private:
     Side side_;
     passes::Settings settings_;
-    std::optional<passes::LawMeter> meter_;
-    std::unique_ptr<passes::Renderer> renderer_; // null: every channel has a reservoir of its own
+    std::unique_ptr<passes::Renderer> renderer_;
+    std::optional<passes::LawMeter> meter_; // empty: every channel has a reservoir of its own
     uint32_t shown_ = 0;
     bool done_ = false;
 };

@@ -47,12 +47,11 @@ Json reportOf(const Findings& findings)
     for (const Side side : {A, B}) {
         const char* name = side == A ? "a" : "b";
         if (findings.curves[side])
-            for (const CorrelationCurve::Point& point : findings.curves[side]->points)
-                json["correlation"][name].push_back(
-                    {{"frame", point.frame},
-                     {"measured", point.measured.mean},
-                     {"standard_error", std::sqrt(point.measured.varianceOfMean)},
-                     {"predicted", point.predicted ? Json(*point.predicted) : Json(nullptr)}});
+            for (const passes::CurvePoint& point : findings.curves[side]->curve.points)
+                json["correlation"][name].push_back({{"frame", point.frame},
+                                                     {"measured", point.autocovariance.mean},
+                                                     {"standard_error", std::sqrt(point.autocovariance.varianceOfMean)},
+                                                     {"predicted", point.law ? Json(point.law->mean) : Json(nullptr)}});
         if (findings.floors[side]) json["floor"][name] = {{"frames", findings.floors[side]->frames}};
     }
     if (const std::optional<Savings>& savings = findings.savings)

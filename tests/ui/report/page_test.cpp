@@ -26,26 +26,29 @@ TEST(Page, EncodesPicturesAsTheRfcDoes)
 
 TEST(Page, IsSelfContainedAndEscapesWhatItIsTold)
 {
-    ui::Page page("a <b> & \"c\"");
-    page.heading("<script>");
-    page.paragraph("x < y");
-    page.table({"name", "value"}, {{"<i>", "1.5"}});
-    page.plot("<?xml version=\"1.0\"?>\n<svg></svg>", "plot");
-    page.picture(bytesOf("foo"), "it's");
-    page.provenance({.command = "trichrome 'a b' && rm",
-                     .scene = "<scene>",
-                     .device = "d",
-                     .driver = "e",
-                     .settings = {{"method", "pt"}},
-                     .partial = true});
-    const std::string html = page.html();
-    EXPECT_EQ(html.find("<script>"), std::string::npos);
-    EXPECT_EQ(html.find("<?xml"), std::string::npos);
-    for (const char* loading : {"http:", "https:", "src=\"/"}) EXPECT_EQ(html.find(loading), std::string::npos);
-    for (const char* part :
-         {"a &lt;b&gt; &amp; &quot;c&quot;", "x &lt; y", "<td>&lt;i&gt;</td>", "<td class=\"number\">1.5</td>",
-          "<svg></svg>", "Zm9v", "it&#39;s", "trichrome &#39;a b&#39; &amp;&amp; rm", "&lt;scene&gt;", "Partial"})
-        EXPECT_NE(html.find(part), std::string::npos) << part;
+    const std::string html = ui::fillPage(R"({{> head.html}}{{> verdicts.html}}
+{{#table}}{{> table.html}}{{/table}}<figure>{{{svg}}}</figure><img alt="{{quoted}}">
+{{#empty}}never{{/empty}}{{> provenance.html}}{{> foot.html}})",
+                                          {{"title", "a <b> & \"c\""},
+                                           {"verdicts", std::vector<std::string>{"<script>", "x < y"}},
+                                           {"table", ui::tableData({"name", "value"}, {{"<i>", "1.5"}, {"", "none"}})},
+                                           {"svg", ui::inlineSvg("<?xml version=\"1.0\"?>\n<svg></svg>")},
+                                           {"quoted", "it's"},
+                                           {"empty", ""},
+                                           {"provenance", ui::provenanceData({.command = "trichrome 'a b' && rm",
+                                                                              .scene = "<scene>",
+                                                                              .device = "d",
+                                                                              .driver = "e",
+                                                                              .settings = {{"method", "pt"}},
+                                                                              .partial = true})}});
+    for (const char* none : {"<script>", "<?xml", "http:", "https:", "src=\"/", "{{", "never", "&amp;lt;"})
+        EXPECT_EQ(html.find(none), std::string::npos) << none;
+    for (const char* part : {"<h1>a &lt;b&gt; &amp; &quot;c&quot;</h1>", "font-variant-numeric",
+                             "<p class=\"verdict\">x &lt; y</p>", "<tr><th>name</th><th>value</th></tr>",
+                             "<td>&lt;i&gt;</td>", "<td class=\"number\">1.5</td>", "<td></td><td>none</td>",
+                             "<svg></svg>", "alt=\"it&apos;s\"", "<pre>trichrome &apos;a b&apos; &amp;&amp; rm</pre>",
+                             "<b>&lt;scene&gt;</b> on d (e)", "Partial", "<td>method</td><td>pt</td>"})
+        EXPECT_NE(html.find(part), std::string::npos) << part << " in\n" << html;
 }
 
 TEST(Page, KnowsTheCommandLine)

@@ -122,26 +122,27 @@ TEST(RenderThread, StudiesAreMeasuredBesideThePictures)
     order.studies = {.reference = true, .correlation = true, .floor = true};
     order.paused = true; // the pictures: studies have the time to themselves
     thread.order(order);
-    const auto curve = [&](ui::Side side) { return thread.findings()->curves[side]; };
+    const auto known = [&](ui::Side side) { return thread.findings()->curves[side]; };
     ASSERT_TRUE(comes([&] {
         const auto findings = thread.findings();
         return findings->reference && findings->floors[ui::A] && findings->floors[ui::A]->frames >= 64 &&
-               findings->floors[ui::B] && curve(ui::A) && curve(ui::A)->batches >= 4 && curve(ui::B) &&
-               curve(ui::B)->batches >= 4;
+               findings->floors[ui::B] && known(ui::A) && known(ui::A)->batches >= 4 && known(ui::B) &&
+               known(ui::B)->batches >= 4;
     }));
     for (const ui::Side side : {ui::A, ui::B}) {
-        ASSERT_EQ(curve(side)->points.size(), 3u); // M = 2, 4, 8
-        for (const ui::CorrelationCurve::Point& point : curve(side)->points) {
+        ASSERT_EQ(known(side)->curve.points.size(), 3u); // M = 2, 4, 8
+        for (const passes::CurvePoint& point : known(side)->curve.points) {
             // Weighted color starts with whole trees, which luminance's own law does not know.
-            ASSERT_EQ(point.predicted.has_value(), side == ui::B || point.frame > 2);
-            if (!point.predicted) continue;
-            const double error = std::sqrt(point.measured.varianceOfMean);
-            EXPECT_NEAR(point.measured.mean, *point.predicted, 5 * error + 0.02 * *point.predicted) << point.frame;
-            EXPECT_LT(error, 0.1 * *point.predicted);
+            ASSERT_EQ(point.law.has_value(), side == ui::B || point.frame > 2);
+            if (!point.law) continue;
+            const double error = std::sqrt(point.autocovariance.varianceOfMean), law = point.law->mean;
+            EXPECT_NEAR(point.autocovariance.mean, law, 5 * error + 0.02 * law) << point.frame;
+            EXPECT_LT(error, 0.1 * law);
         }
     }
-    EXPECT_GT(*curve(ui::A)->plateau, 0);
-    EXPECT_NEAR(*curve(ui::B)->plateau, 0, 1e-9 * *curve(ui::A)->plateau);
+    const double plateau = known(ui::A)->curve.plateau->mean;
+    EXPECT_GT(plateau, 0);
+    EXPECT_NEAR(known(ui::B)->curve.plateau->mean, 0, 1e-9 * plateau);
 
     const std::shared_ptr<const ui::Findings> findings = thread.findings();
     const auto meanOf = [](const image::Image& picture) {

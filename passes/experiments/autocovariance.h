@@ -1,0 +1,101 @@
+#pragma once
+// The paper's experiment: how strongly the frames M-1 and M of temporal reuse depend on each other, over independent
+// runs, and what the closed form says about it (docs/DECISIONS.md, "Measuring").
+
+#include <array>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/base/batches.h"
+#include "passes/camera_path.h"
+#include "passes/renderer.h"
+
+namespace passes
+{
+
+// Frames M-1 and M of a batch of runs, averaged over pixels and channels.
+struct ChainPoint {
+    uint32_t frame = 0;                    // M, counted from 1
+    uint64_t pixels = 0;                   // of one run, that counted
+    statistics::BatchValue autocovariance; // radiance^2
+    statistics::BatchValue variance;       // of frame M alone, radiance^2
+    bool operator==(const ChainPoint&) const = default;
+};
+
+// Takes the points M = 2, 4, 8, ... of a renderer's runs, frame by frame: all from one chain, since M_c >= M does not
+// bind before. With a moving camera a pixel of frame M pairs with the one that saw the same point in frame M-1; pixels
+// without one do not count.
+class Chain
+{
+  public:
+    explicit Chain(Renderer& renderer, CameraAt cameraAt = {}); // starts over
+    void step();                                                // renders the next frame
+    uint32_t frame() const { return frame_; }                   // the last one, counted from 1
+    const std::vector<ChainPoint>& points() const { return points_; }
+
+  private:
+    Renderer& renderer_;
+    CameraAt cameraAt_;
+    uint32_t frame_ = 0;
+    image::Image before_;
+    std::vector<ChainPoint> points_;
+};
+
+// Single frames without reuse, of a batch of runs: what the law of the chain is made of.
+struct FrameLaw {
+    statistics::BatchValue variance; // of a frame's color, mean over pixels and channels: sigma^2 for the path tracer
+    statistics::BatchValue plateau;  // P, likewise: what is left of the autocovariance however long the history is
+    std::vector<glm::dvec3> floor;   // P by pixel and channel
+    std::vector<glm::dvec3> mean;    // color, without what is seen directly
+    bool operator==(const FrameLaw&) const = default;
+};
+
+// Measures it on a renderer of lawSettings(), frame by frame. `emission` is what each pixel sees directly (one run's
+// picture): no part of what is resampled.
+class LawMeter
+{
+  public:
+    LawMeter(Renderer& renderer, image::Image emission); // starts over
+    void step();                                         // renders the next frame
+    uint32_t frames() const { return frames_; }
+    FrameLaw law() const; // needs two frames; below three runs there is nothing to leave out (`without` is empty)
+
+  private:
+    // Of one channel of one pixel in one run. C: the color; s: the weight sum that it is drawn with; E[C^2 / s] is
+    // E[q], with q the mean of f_c^2 / p_hat over a tree's paths: C^2 / s has that mean given the tree.
+    struct Sums {
+        double color = 0, weight = 0, ratio = 0; // running means
+        double square = 0;                       // sum of squared deviations of C
+
+        void add(double c, double s, double n);
+        double plateau(double n) const; // P from the means of n values
+    };
+    Renderer& renderer_;
+    size_t runs_;
+    std::array<glm::vec3, 3> targets_; // [c]: of the reservoir that channel c is resolved from
+    image::Image emission_;
+    uint32_t frames_ = 0;
+    std::vector<Sums> sums_; // run by run, pixel by pixel, by channel
+};
+
+// Of the single frames that the law of these settings is made of: without reuse, and showing the chosen samples.
+Settings lawSettings(Settings settings);
+
+// Of the picture of what each pixel sees directly.
+Settings emissionSettings(Settings settings);
+
+// Whether the law of the chain holds: temporal reuse alone, every pixel seeing the same point in each frame (the camera
+// rests, and SceneOnDevice::viewRepeats()).
+bool lawHolds(const Settings& settings, bool sameView);
+
+// Whether every channel has a reservoir of its own, so that a resting camera's chain is the mean of the path tracer's
+// frames.
+bool accumulates(Method method);
+
+// The autocovariance between frames M-1 and M <= M_c + 1 that the law predicts, for each way of reading color: of
+// chosen samples V / M + (1 - 2 / M) P; of all with their weights V / M + (1 - 2 / M) (1 - 2 / (M - 1)) P, where the
+// first frame shows whole trees, so that for M = 2 the law of the path tracer is to be given.
+statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame);
+
+} // namespace passes

@@ -1,0 +1,136 @@
+#include "passes/experiments/race.h"
+
+#include "engine/base/check.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+namespace passes
+{
+
+namespace
+{
+
+// Frames whose cameras make the stages of both a resting and a moving view compile.
+constexpr uint64_t WARM_UP[] = {0, 0, 1, 64, 4096};
+
+double deviceSecondsOf(const RenderStats& stats, uint64_t frames)
+{
+    double milliseconds = 0;
+    for (const auto& [stage, perFrame] : stats.stageMilliseconds) milliseconds += perFrame;
+    return milliseconds * double(frames) / 1000;
+}
+
+} // namespace
+
+bool isCheckpoint(uint64_t frames, bool moving)
+{
+    return std::has_single_bit(frames) || (!moving && frames % 3 == 0 && std::has_single_bit(frames / 3));
+}
+
+Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, CameraAt cameraAt,
+           const Limits& limits, const std::function<void(double)>& bvhProgress)
+    : cameraAt_(std::move(cameraAt)), limits_(limits)
+{
+    CHECK(!methods.empty());
+    CHECK(!cameraAt_ || limits_.frames > 0); // each measured frame of a moving camera has a reference of its own
+    for (const Settings& settings : methods)
+        runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings, bvhProgress)
+                                             : std::make_unique<Renderer>(renderer(), settings)});
+    for (Runner& runner : runners_) {
+        for (const uint64_t frame : WARM_UP) {
+            if (cameraAt_) runner.renderer->setCamera(cameraAt_(frame));
+            runner.renderer->renderFrame();
+        }
+    }
+}
+
+void Race::prepare(uint64_t seed)
+{
+    for (Runner& runner : runners_) {
+        Settings settings = runner.renderer->settings();
+        settings.seed = seed;
+        runner.renderer->apply(settings);
+        if (cameraAt_) runner.renderer->setCamera(cameraAt_(0));
+        runner.renderer->reset(); // after the camera: it must not seem to have jumped there
+        runner.wallSeconds = 0;
+        runner.done = false;
+    }
+}
+
+Repeat Race::run(uint64_t seed, References& references, const std::function<void(double)>& progress,
+                 const std::function<bool()>& stop)
+{
+    prepare(seed);
+    Repeat repeat;
+    const auto finished = [&] { return std::ranges::all_of(runners_, &Runner::done); };
+    for (size_t first = 0; !finished(); ++first) {
+        for (size_t i = 0; i < runners_.size(); ++i) {
+            const size_t method = (first + i) % runners_.size();
+            Runner& runner = runners_[method];
+            if (runner.done) continue;
+            if (slice(runner) && !measure(uint32_t(method), references, repeat)) return repeat;
+            double sum = 0;
+            for (const Runner& each : runners_) sum += doneOf(each);
+            progress(sum / double(runners_.size()));
+            if (stop()) return repeat;
+        }
+    }
+    for (Runner& runner : runners_) {
+        repeat.finals.push_back(cameraAt_ ? runner.renderer->readFrame() : runner.renderer->readMean());
+        for (const auto& [stage, count] : runner.renderer->stats().nonFinite) repeat.nonFinite += count;
+    }
+    repeat.complete = true;
+    return repeat;
+}
+
+double Race::doneOf(const Runner& runner) const
+{
+    if (runner.done) return 1;
+    return limits_.frames > 0 ? double(runner.renderer->frameCount()) / double(limits_.frames)
+                              : std::min(runner.wallSeconds / limits_.seconds, 1.0);
+}
+
+bool Race::slice(Runner& runner)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    Renderer& renderer = *runner.renderer;
+    const auto atEnd = [&] { return limits_.frames > 0 && renderer.frameCount() >= limits_.frames; };
+    bool checkpoint = false;
+    do {
+        if (cameraAt_) renderer.setCamera(cameraAt_(renderer.frameCount()));
+        renderer.renderFrame();
+        checkpoint = isCheckpoint(renderer.frameCount(), cameraAt_ != nullptr);
+    } while (!checkpoint && !atEnd() && elapsed() < limits_.sliceSeconds);
+    renderer.wait();
+    runner.wallSeconds += elapsed();
+    runner.done = atEnd() || (limits_.frames == 0 && runner.wallSeconds >= limits_.seconds);
+    return checkpoint || runner.done;
+}
+
+// False when there was no reference: stopped.
+bool Race::measure(uint32_t method, References& references, Repeat& repeat)
+{
+    Runner& runner = runners_[method];
+    Renderer& renderer = *runner.renderer;
+    const uint64_t frames = renderer.frameCount();
+    const Reference* reference = references.after(frames);
+    if (reference == nullptr) return false;
+    Sample sample{.method = method,
+                  .frames = frames,
+                  .deviceSeconds = deviceSecondsOf(renderer.stats(), frames),
+                  .wallSeconds = runner.wallSeconds};
+    const auto add = [&](bool average, const image::Image& picture) {
+        sample.average = average;
+        sample.error = image::without(reference->error, image::measure(reference->picture, picture));
+        repeat.samples.push_back(sample);
+    };
+    if (!cameraAt_) add(true, renderer.readMean());
+    add(false, renderer.readFrame());
+    return true;
+}
+
+} // namespace passes
