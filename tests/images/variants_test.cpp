@@ -1,4 +1,5 @@
 // What is compiled out must not be missed: a renderer with everything compiled in makes the same pictures.
+// Covers engine/scene/material_tables.cpp, engine/scene/scene_tables.cpp.
 
 #include <gtest/gtest.h>
 

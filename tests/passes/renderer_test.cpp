@@ -1,3 +1,5 @@
+// Covers passes/scene_on_device.cpp, passes/stage.cpp.
+
 #include "passes/renderer.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Whatever a device is tuned to, it makes the same picture and counts the same. By default each choice once and those
 // of a graphics card together, in a plain scene; with TRICHROME_TEST_MATRIX=1 all combinations, in one that has all
 // kinds of materials.
+// Covers passes/variant.cpp.
 
 #include <cstdlib>
 

@@ -1,3 +1,5 @@
+// Covers engine/gpu/device.cpp, engine/gpu/instance.cpp.
+
 #include "engine/base/error.h"
 #include "engine/gpu/vulkan.h"
 #include "tests/support/gpu_fixture.h"

@@ -1,4 +1,5 @@
 // Pipelines and bind groups by the shader's own names; limits.
+// Covers engine/gpu/reflection.cpp.
 
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"

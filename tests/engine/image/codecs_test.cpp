@@ -1,3 +1,6 @@
+// Covers engine/image/exr_attributes.cpp, engine/image/exr_codec.cpp, engine/image/hdr_codec.cpp,
+// engine/image/jpeg_codec.cpp, engine/image/png_codec.cpp.
+
 #include "engine/image/codecs.h"
 
 #include <csetjmp>

@@ -1,5 +1,6 @@
 // Error figures against closed forms on pictures of one color; SSIM against sums over each window in two dimensions;
 // PSNR, SSIM and FLIP against other implementations (metrics_reference.py).
+// Covers engine/image/plane.cpp.
 
 #include "engine/image/metrics.h"
 

@@ -1,3 +1,6 @@
+// Covers engine/scene/bvh_collapse.cpp, engine/scene/bvh_encode.cpp, engine/scene/bvh_layout.cpp,
+// engine/scene/bvh_pairs.cpp, engine/scene/bvh_reinsert.cpp.
+
 #include "engine/scene/bvh_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Covers engine/scene/tinygltf_implementation.cpp, engine/scene/warnings.cpp.
+
 #include <filesystem>
 #include <fstream>
 

@@ -1,3 +1,5 @@
+// Covers engine/scene/gltf_accessor.cpp, engine/scene/gltf_mesh_part.cpp, engine/scene/gltf_tangents.cpp.
+
 #include <cmath>
 #include <numbers>
 

@@ -1,3 +1,5 @@
+// Covers engine/scene/gltf_images.cpp, engine/scene/gltf_values.cpp, engine/scene/texture_image.cpp.
+
 #include <cmath>
 
 #include <gtest/gtest.h>

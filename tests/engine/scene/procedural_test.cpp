@@ -1,3 +1,5 @@
+// Covers engine/scene/procedural_dim.cpp, engine/scene/procedural_hall.cpp, engine/scene/procedural_lamps.cpp.
+
 #include "engine/scene/procedural.h"
 
 #include <gtest/gtest.h>

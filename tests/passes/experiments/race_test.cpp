@@ -1,4 +1,5 @@
 // Methods in turns, references and their cache: on a scene of a few pixels.
+// Covers passes/experiments/reference.cpp.
 
 #include "passes/experiments/race.h"
 

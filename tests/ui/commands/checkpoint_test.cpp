@@ -1,4 +1,5 @@
 // render --checkpoint and --resume as a person uses them: broken off, killed, gone on with, and refused.
+// Covers ui/cli/checkpoint_options.cpp, ui/cli/interrupt.cpp.
 
 #include "tests/support/trichrome.h"
 

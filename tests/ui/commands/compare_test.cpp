@@ -1,4 +1,5 @@
 // The compare command, run as a person would; and its page in a real browser.
+// Covers ui/report/comparison_page.cpp.
 
 #include "tests/support/trichrome.h"
 

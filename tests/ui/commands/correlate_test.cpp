@@ -1,4 +1,5 @@
 // The correlate command, run as a person would.
+// Covers ui/ranks_mpi.cpp.
 
 #include "tests/support/trichrome.h"
 

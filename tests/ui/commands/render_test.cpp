@@ -1,4 +1,6 @@
 // The render command, run as a person would: what it refuses, what it writes, and what it says about it.
+// Covers ui/main.cpp, ui/ranks_alone.cpp, ui/cli/device_options.cpp, ui/cli/help.cpp, ui/cli/motion_options.cpp,
+// ui/cli/output_file.cpp, ui/cli/run_report.cpp, ui/cli/scene_source.cpp.
 
 #include "tests/support/trichrome.h"
 

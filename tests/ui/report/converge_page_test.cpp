@@ -1,4 +1,5 @@
 // The page, table and verdicts of `converge` from synthetic repeats.
+// Covers ui/report/converge_plots.cpp.
 
 #include "ui/report/converge_page.h"
 

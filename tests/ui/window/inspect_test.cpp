@@ -1,4 +1,5 @@
 // False colors, the pixel under the mouse, changed shaders, and that the Vulkan layers have nothing to say.
+// Covers ui/window/pixel_room.cpp.
 
 #include "tests/support/program.h"
 #include "tests/ui/window/window_fixture.h"

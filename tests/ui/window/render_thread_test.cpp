@@ -1,4 +1,5 @@
 // What happens between the window and the device when things take long or break.
+// Covers ui/window/compile_ahead.cpp, ui/window/contender.cpp.
 
 #include "ui/window/render_thread.h"
 
