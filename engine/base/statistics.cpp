@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 
 namespace statistics
 {
@@ -77,104 +80,41 @@ Estimate estimateOf(const Moments& moments)
 namespace
 {
 
-// Modified Lentz evaluation of b0 + a1/(b1 + a2/(b2 + ...)); Numerical Recipes 5.2.
-template <class Terms>
-double continuedFraction(double b0, Terms&& terms)
-{
-    const double tiny = 1e-300;
-    double f = b0 == 0 ? tiny : b0;
-    double c = f, d = 0;
-    for (int i = 1; i < 10000; ++i) {
-        const auto [a, b] = terms(i);
-        d = b + a * d;
-        if (d == 0) d = tiny;
-        c = b + a / c;
-        if (c == 0) c = tiny;
-        d = 1 / d;
-        f *= c * d;
-        if (std::abs(c * d - 1) < 1e-15) break;
-    }
-    return f;
-}
+using namespace boost::math::policies;
+using boost::math::complement;
 
-// Q(a, x) = Gamma(a, x) / Gamma(a); Abramowitz & Stegun 6.5.29 and 6.5.31.
-double incompleteGammaUpper(double a, double x)
-{
-    if (x <= 0) return 1;
-    const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
-    if (x < a + 1) {
-        double term = 1 / a, sum = term;
-        for (int i = 1; i < 10000 && std::abs(term) > 1e-16 * sum; ++i) {
-            term *= x / (a + i);
-            sum += term;
-        }
-        return 1 - sum * front;
-    }
-    const double fraction =
-        continuedFraction(x + 1 - a, [&](int i) { return std::pair(-i * (i - a), x + 2 * i + 1 - a); });
-    return front / fraction;
-}
-
-// I_x(a, b); Abramowitz & Stegun 26.5.8.
-double incompleteBeta(double a, double b, double x)
-{
-    if (x <= 0) return 0;
-    if (x >= 1) return 1;
-    if (x > (a + 1) / (a + b + 2)) return 1 - incompleteBeta(b, a, 1 - x);
-    const double front =
-        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
-    const double fraction = continuedFraction(1, [&](int i) {
-        const int m = i / 2;
-        const double numerator = i % 2 == 0 ? m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
-                                            : -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-        return std::pair(numerator, 1.0);
-    });
-    return front / fraction;
-}
-
-// Root of a falling function.
-template <class Function>
-double bisect(double low, double high, Function&& falling)
-{
-    for (int i = 0; i < 200; ++i) {
-        const double middle = 0.5 * (low + high);
-        (falling(middle) > 0 ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
+// What has no value is nan, as in <cmath>, and no exception.
+using NoThrow = policy<domain_error<ignore_error>, pole_error<ignore_error>, overflow_error<ignore_error>,
+                       evaluation_error<ignore_error>>;
+using Normal = boost::math::normal_distribution<double, NoThrow>;
+using Student = boost::math::students_t_distribution<double, NoThrow>;
+using SquaredSum = boost::math::chi_squared_distribution<double, NoThrow>;
 
 } // namespace
 
 double normalUpperTail(double z)
 {
-    return 0.5 * std::erfc(z / std::numbers::sqrt2);
+    return cdf(complement(Normal(), z));
 }
 
 double normalQuantile(double p)
 {
-    if (p < 0.5) return -bisect(0, 40, [&](double z) { return normalUpperTail(z) - p; });
-    return bisect(0, 40, [&](double z) { return normalUpperTail(z) - (1 - p); });
+    return quantile(Normal(), p);
 }
 
 double studentUpperTail(double t, double degreesOfFreedom)
 {
-    // From here on it is normal within 1e-6 of the tail, and the gamma functions below lose their digits.
-    constexpr double MANY_DEGREES = 1e8;
-    if (degreesOfFreedom > MANY_DEGREES) return normalUpperTail(t);
-    if (std::isinf(t)) return t > 0 ? 0 : 1;
-    const double tail = 0.5 * incompleteBeta(degreesOfFreedom / 2, 0.5, degreesOfFreedom / (degreesOfFreedom + t * t));
-    return t >= 0 ? tail : 1 - tail;
+    return cdf(complement(Student(degreesOfFreedom), t));
 }
 
 double studentQuantile(double p, double degreesOfFreedom)
 {
-    if (p < 0.5) return -studentQuantile(1 - p, degreesOfFreedom);
-    return bisect(0, 1e6, [&](double t) { return studentUpperTail(t, degreesOfFreedom) - (1 - p); });
+    return quantile(Student(degreesOfFreedom), p);
 }
 
 double chiSquaredUpperTail(double x, double degreesOfFreedom)
 {
-    return incompleteGammaUpper(degreesOfFreedom / 2, x / 2);
+    return cdf(complement(SquaredSum(degreesOfFreedom), x));
 }
 
 Interval meanInterval(const Estimate& estimate, double level)
