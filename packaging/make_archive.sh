@@ -10,7 +10,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 C_LIBRARY='^(linux-vdso|ld-linux-x86-64|libc|libm|libdl|libpthread|librt|libresolv)\.so'
 
 # What the executable contains of headers and static libraries.
-INSIDE="glslang-dev spirv-tools libcli11-dev libkainjow-mustache-dev nlohmann-json3-dev libtinygltf-dev libstb-dev libglm-dev"
+INSIDE="glslang-dev spirv-tools libcli11-dev libkainjow-mustache-dev nlohmann-json3-dev libtinygltf-dev libstb-dev libglm-dev
+    libboost-math-dev"
 
 add_license() { cp -L "/usr/share/doc/$1/copyright" "$root/licenses/$1.txt"; }
 

@@ -2,6 +2,7 @@
 // Measures batches of `correlate`'s experiment, a frame a step, one after the other.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 

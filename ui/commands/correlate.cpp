@@ -20,7 +20,6 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <optional>
 
 namespace ui
 {
