@@ -58,9 +58,9 @@ void Chain::step()
     ++frame_;
     if (cameraAt_) renderer_.setCamera(cameraAt_(frame_ - 1));
     renderer_.renderFrame();
-    if (isPowerOfTwo(frame_ + 1)) before_ = renderer_.readFrame();
+    if (isPowerOfTwo(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
     if (frame_ == 1 || !isPowerOfTwo(frame_)) return;
-    const image::Image now = renderer_.readFrame();
+    const image::Image now = renderer_.read(LAST_FRAME);
     if (!cameraAt_) {
         points_.push_back(pointOf(frame_, before_.pixels, now.pixels, runs));
         return;
@@ -169,7 +169,7 @@ std::optional<FrameLaw> measureLaw(Renderer& renderer, uint32_t frames, const st
     renderer.reset();
     while (meter.frames() < frames) {
         renderer.renderFrame();
-        meter.add(renderer.readFrame());
+        meter.add(renderer.read(LAST_FRAME));
         if (tick && !tick()) return std::nullopt;
     }
     return meter.law();

@@ -103,7 +103,7 @@ const Reference* References::after(uint64_t frames)
     if (const auto found = made_.find(index); found != made_.end()) return &found->second;
     if (cameraAt_) renderer_->setCamera(cameraAt_(frames - 1));
     traceBatch(0, 1);
-    const std::vector<glm::vec3> pixels = renderer_->readMean().pixels;
+    const std::vector<glm::vec3> pixels = renderer_->read(MEAN).pixels;
     const std::string text =
         fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
     const std::string key =
@@ -145,7 +145,7 @@ std::optional<Reference> References::trace()
     while (!reached() && (mean.count() < FIRST_CHECK || reference.pathTraced < options_.precision.maxFrames)) {
         if (options_.stop()) return std::nullopt;
         traceBatch(1 + mean.count(), length);
-        mean.add(renderer_->readMean());
+        mean.add(renderer_->read(MEAN));
         reference.pathTraced += length;
         if (mean.count() < 2) continue;
         reference.error = mean.ownError();

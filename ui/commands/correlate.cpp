@@ -90,7 +90,7 @@ class Correlator
         emitters_ = std::make_unique<passes::Renderer>(gpu, world, dark, bvhProgress);
         if (cameraAt_) emitters_->setCamera(cameraAt_(0));
         emitters_->renderFrame();
-        emission_ = emitters_->readFrame();
+        emission_ = emitters_->read(passes::LAST_FRAME);
     }
 
     bool sameView() const { return !cameraAt_ && emitters_->scene().viewRepeats(plain_); }

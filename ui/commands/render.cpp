@@ -102,7 +102,7 @@ int RenderCommand::run()
 
     renderFrames(renderer, cameraAt, checkpoint, progress, report, commandStart);
     const bool kept = checkpoint.finish(renderer, report.wallSeconds);
-    const image::Image picture = renderer.readColor();
+    const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
     image::write(output, picture, metadataOf(report));

@@ -41,7 +41,7 @@ image::Image emissionOf(const Subject& subject, passes::Settings settings)
     const auto renderer = siblingOf(subject, settings);
     renderer->renderFrame();
     renderer->wait();
-    return renderer->readFrame();
+    return renderer->read(passes::LAST_FRAME);
 }
 
 // ---------------------------------------------------------------------------------------------------------- reference
@@ -69,7 +69,7 @@ class ReferenceStudy : public Study
         if (!full) return false;
         batchFrames_ =
             renderer_->frameCount(); // batches of equal length, so that their spread says how good the mean is
-        mean_.add(renderer_->readMean());
+        mean_.add(renderer_->read(passes::MEAN));
         --settings_.seed;
         renderer_->apply(settings_);
         renderer_->reset();
@@ -164,7 +164,7 @@ class CorrelationStudy : public Study
         }
         lawRenderer_->renderFrame();
         lawRenderer_->wait();
-        meter_->add(lawRenderer_->readFrame());
+        meter_->add(lawRenderer_->read(passes::LAST_FRAME));
         if (meter_->frames() == CHAIN_LAW_FRAMES) laws_.push_back(meter_->law());
     }
 
@@ -223,7 +223,7 @@ class FloorStudy : public Study
         if (renderer_) {
             renderer_->renderFrame();
             renderer_->wait();
-            meter_->add(renderer_->readFrame());
+            meter_->add(renderer_->read(passes::LAST_FRAME));
             floor.frames = meter_->frames();
             if (floor.frames < FIRST_FLOOR || floor.frames < GROWTH * shown_) return false;
             for (const glm::dvec3& p : meter_->law().floor)
