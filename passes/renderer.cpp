@@ -3,6 +3,7 @@
 #include "engine/base/check.h"
 #include "passes/camera_choice.h"
 #include "passes/estimator.h"
+#include "shaders/shared/rows.h"
 
 #include <array>
 #include <bit>
@@ -222,26 +223,17 @@ void Renderer::finishOldest()
     ++timedFrames_;
 }
 
-image::Image Renderer::readColor()
-{
-    return settings_.average ? readMean() : readFrame();
-}
-
-image::Image Renderer::readFrame()
+image::Image Renderer::read(const Output& output)
 {
     image::Image picture{.width = settings_.width, .height = pictureHeight()};
-    for (const glm::vec4& value : device_.queue().readAs<glm::vec4>(buffers_["Color"]))
-        picture.pixels.emplace_back(glm::dvec3(value) / scene_->radianceScale);
-    return picture;
-}
-
-image::Image Renderer::readMean()
-{
-    image::Image picture{.width = settings_.width, .height = pictureHeight()};
-    const std::vector<glm::vec4> film = device_.queue().readAs<glm::vec4>(buffers_["Film"]);
-    const double scale = 1 / (scene_->radianceScale * double(std::max<uint64_t>(frameCount_, 1)));
-    for (size_t i = 0; i < film.size(); i += 2) // the carry is what the sum has too much
-        picture.pixels.emplace_back((glm::dvec3(film[i]) - glm::dvec3(film[i + 1])) * scale);
+    const std::vector<glm::vec4> rows = device_.queue().readAs<glm::vec4>(buffers_[output.buffer]);
+    const double frames = output.sums ? double(std::max<uint64_t>(frameCount_, 1)) : 1;
+    const double scale = 1 / (scene_->radianceScale * frames);
+    for (size_t i = 0; i < rows.size(); i += output.sums ? shared::FILM_ROWS : shared::COLOR_ROWS) {
+        glm::dvec3 value(rows[i]);
+        if (output.sums) value -= glm::dvec3(rows[i + 1]);
+        picture.pixels.emplace_back(value * scale);
+    }
     return picture;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"
+#include "passes/film.h"
 #include "passes/frame_buffers.h"
 #include "passes/frame_plan.h"
 #include "passes/scene_on_device.h"
@@ -75,10 +76,7 @@ class Renderer
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
     void wait();                                 // until all submitted frames are done
 
-    image::Image
-    readColor(); // waits; linear RGB in scene units: the mean of all frames (settings.average), or the last one
-    image::Image readFrame(); // waits; the last frame alone
-    image::Image readMean();  // waits; the mean of all frames
+    image::Image read(const Output& output); // waits; in scene units
     // Waits. For each pixel of the first run the index of the one that saw the same point in the frame before the last,
     // or shared::NO_NEIGHBOR: as temporal reuse finds it. Needs two frames.
     std::vector<uint32_t> readPreviousPixels();

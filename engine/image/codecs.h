@@ -33,11 +33,12 @@ Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& wh
 
 Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& what);
 
-// OpenEXR: R, G and B, or Y alone, of any channel type. `transparent`, when given, says whether A is anywhere not 1.
+// OpenEXR: R, G and B, or Y alone, of any channel type, of `layer` or, where that is empty, of none. `transparent`,
+// when given, says whether A is anywhere not 1.
 bool isExr(std::span<const std::byte> bytes);
 Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata = nullptr,
-                bool* transparent = nullptr);
-std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata);
+                bool* transparent = nullptr, const std::string& layer = "");
+std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata, std::span<const Layer> layers = {});
 
 // Radiance RGBE.
 bool isHdr(std::span<const std::byte> bytes);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <ranges>
+#include <set>
 #include <string_view>
 
 #include <OpenEXR/ImfChannelList.h>
@@ -16,7 +18,9 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/shown.h"
 #include "engine/image/exr_attributes.h"
 
 namespace image
@@ -126,12 +130,13 @@ void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what
                     std::min(rows, height), bytesPerPixel, MAX_BLOCK_BYTES);
 }
 
-Image readPixels(Imf::InputPart& file, bool gray, bool* transparent)
+// Of the channels whose names begin with `prefix`: the layer's and a dot, or nothing.
+Image readPixels(Imf::InputPart& file, const std::string& prefix, bool gray, bool* transparent)
 {
     const Imath::Box2i& window = file.header().dataWindow();
     const auto width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
     Image image{width, 0, {}};
-    const bool hasAlpha = transparent && file.header().channels().findChannel("A");
+    const bool hasAlpha = transparent && file.header().channels().findChannel(prefix + "A");
     const auto rowsAtOnce = static_cast<size_t>(std::min(ROWS_AT_ONCE, window.max.y - window.min.y + 1));
     std::vector<float> alphas(hasAlpha ? width * rowsAtOnce : 0);
     for (int y = window.min.y; y <= window.max.y; y += ROWS_AT_ONCE) {
@@ -141,10 +146,10 @@ Image readPixels(Imf::InputPart& file, bool gray, bool* transparent)
         glm::vec3* rows = &image.pixels[size_t{width} * static_cast<size_t>(y - window.min.y)];
         Imf::FrameBuffer buffer;
         if (gray)
-            buffer.insert("Y", sliceOf(rows, 0, window, y));
+            buffer.insert(prefix + "Y", sliceOf(rows, 0, window, y));
         else
-            for (int c = 0; c < 3; ++c) buffer.insert(std::string(1, "RGB"[c]), sliceOf(rows, c, window, y));
-        if (hasAlpha) buffer.insert("A", alphaSliceOf(alphas, window, y));
+            for (int c = 0; c < 3; ++c) buffer.insert(prefix + "RGB"[c], sliceOf(rows, c, window, y));
+        if (hasAlpha) buffer.insert(prefix + "A", alphaSliceOf(alphas, window, y));
         file.setFrameBuffer(buffer);
         file.readPixels(y, last);
         const auto end = alphas.begin() + (hasAlpha ? ptrdiff_t{width} * (last - y + 1) : 0);
@@ -174,7 +179,20 @@ Metadata readMetadata(const Imf::Header& header)
     return metadata;
 }
 
-Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent)
+// For the end of a sentence about a picture that is not there.
+std::string listOfLayers(const Imf::ChannelList& channels)
+{
+    constexpr size_t MOST = 16;
+    std::set<std::string> names;
+    channels.layers(names);
+    std::string list;
+    for (const std::string& name : names | std::views::take(MOST))
+        list += (list.empty() ? "; its layers are " : ", ") + fmt::format("\"{}\"", shown(name));
+    return list + (names.size() > MOST ? " and others" : "");
+}
+
+Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent,
+             const std::string& layer)
 {
     checkAttributes(bytes, what);
     MemoryInput input(bytes);
@@ -183,13 +201,16 @@ Image decode(std::span<const std::byte> bytes, const std::string& what, Metadata
     Imf::MultiPartInputFile parts(input, 0);
     const Imf::Header& header = parts.header(0);
     const Imf::ChannelList& channels = header.channels();
-    const bool color = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
-    if (!color && (!channels.findChannel("Y") || channels.findChannel("RY")))
-        throw Error("{} has neither the channels R, G, B nor Y alone.", what);
+    const std::string prefix = layer.empty() ? "" : layer + ".";
+    const auto has = [&](const char* name) { return channels.findChannel(prefix + name) != nullptr; };
+    const bool color = has("R") && has("G") && has("B");
+    if (!color && (!has("Y") || has("RY")))
+        throw Error("{}{} has neither the channels R, G, B nor Y alone{}.", what,
+                    layer.empty() ? "" : fmt::format(", layer \"{}\",", shown(layer)), listOfLayers(channels));
     checkClaim(header, bytes.size(), what);
     if (metadata) *metadata = readMetadata(header);
     Imf::InputPart file(parts, 0);
-    return readPixels(file, !color, transparent);
+    return readPixels(file, prefix, !color, transparent);
 }
 
 } // namespace
@@ -199,10 +220,11 @@ bool isExr(std::span<const std::byte> bytes)
     return bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
 }
 
-Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent)
+Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metadata* metadata, bool* transparent,
+                const std::string& layer)
 {
     try {
-        return decode(bytes, what, metadata, transparent);
+        return decode(bytes, what, metadata, transparent, layer);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& reason) {
@@ -212,20 +234,27 @@ Image decodeExr(std::span<const std::byte> bytes, const std::string& what, Metad
     }
 }
 
-std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata)
+std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata, std::span<const Layer> layers)
 {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
-    for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer buffer;
+    const auto add = [&](const std::string& prefix, const std::string& letters, const Image& picture) {
+        CHECK(picture.width == image.width && picture.height == image.height && letters.size() <= 3);
+        auto* pixels = const_cast<glm::vec3*>(picture.pixels.data()); // only read: Slice serves both directions
+        for (size_t c = 0; c < letters.size(); ++c) {
+            header.channels().insert(prefix + letters[c], Imf::Channel(Imf::FLOAT));
+            buffer.insert(prefix + letters[c], sliceOf(pixels, int(c), header.dataWindow(), 0));
+        }
+    };
+    add("", "RGB", image);
+    for (const Layer& layer : layers) add(layer.name + ".", layer.channels, layer.picture);
     for (const auto& [key, value] : metadata)
         header.insert(isReserved(key) ? std::string(PREFIX) + key : key, Imf::StringAttribute(value));
 
     MemoryOutput output;
     {
         Imf::OutputFile file(output, header, 0);
-        Imf::FrameBuffer buffer;
-        auto* pixels = const_cast<glm::vec3*>(image.pixels.data()); // only read: Slice serves both directions
-        for (int c = 0; c < 3; ++c) buffer.insert(std::string(1, "RGB"[c]), sliceOf(pixels, c, header.dataWindow(), 0));
         file.setFrameBuffer(buffer);
         file.writePixels(static_cast<int>(image.height));
     }

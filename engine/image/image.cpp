@@ -7,6 +7,7 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/shown.h"
 #include "engine/image/codecs.h"
 
 namespace image
@@ -90,22 +91,26 @@ void requireWritable(const std::filesystem::path& path)
         throw Error("Cannot write \"{}\": it is a folder.", path.string());
 }
 
-void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata)
+void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata,
+           const std::vector<Layer>& layers)
 {
     CHECK_EQ(image.pixels.size(), size_t{image.width} * image.height);
     requireWritable(path);
     const bool exr = files::extensionOf(path) == ".exr";
-    files::writeAtomically(path, exr ? encodeExr(image, metadata) : tonemappedPng(image, metadata));
+    CHECK(exr || layers.empty());
+    files::writeAtomically(path, exr ? encodeExr(image, metadata, layers) : tonemappedPng(image, metadata));
 }
 
-Loaded read(const std::filesystem::path& path)
+Loaded read(const std::filesystem::path& path, const std::string& layer)
 {
     const std::vector<std::byte> bytes = files::read(path);
     const std::string what = fmt::format("Picture \"{}\"", path.string());
     Loaded loaded;
     bool transparent = false;
     if (isExr(bytes)) {
-        loaded.image = decodeExr(bytes, what, &loaded.metadata, &transparent);
+        loaded.image = decodeExr(bytes, what, &loaded.metadata, &transparent, layer);
+    } else if (!layer.empty()) {
+        throw Error("{} is no EXR, so it has no layer \"{}\".", what, shown(layer));
     } else if (isHdr(bytes)) {
         loaded.image = decodeHdr(bytes, what);
     } else if (isPng(bytes)) {

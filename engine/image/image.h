@@ -25,9 +25,17 @@ struct Image {
 // Key and value pairs: EXR string attributes (read back in the keys' order), PNG text chunks.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// EXR: float32 R, G, B, ZIP. PNG: 8 bit, Reinhard c/(c+1) per channel then sRGB. By extension; written whole or not at
-// all. Throws Error: other extension, cannot write.
-void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata);
+// A further picture of an EXR file, of the same size. Its channels there are "name.R", "name.G", ...
+struct Layer {
+    std::string name;
+    std::string channels; // a letter each, at most three
+    Image picture;
+};
+
+// EXR: float32 R, G, B, ZIP, and the layers. PNG: 8 bit, Reinhard c/(c+1) per channel then sRGB; no layers. By
+// extension; written whole or not at all. Throws Error: other extension, cannot write.
+void write(const std::filesystem::path& path, const Image& image, const Metadata& metadata,
+           const std::vector<Layer>& layers = {});
 
 // The bytes that write() puts into a PNG file.
 std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata);
@@ -42,8 +50,8 @@ struct Loaded {
 };
 // EXR (any channel type; R G B, or Y alone), Radiance HDR, PNG (8/16 bit, decoded sRGB and, when our metadata says so,
 // un-tonemapped) or JPEG, told apart by their first bytes. Pixels as the file has them, non-finite ones too. Alpha is
-// ignored, with a warning where it is not 1.
-// Throws Error: missing, malformed, larger than 2^28 pixels or than the file could hold.
-Loaded read(const std::filesystem::path& path);
+// ignored, with a warning where it is not 1. `layer`: of an EXR; empty: the channels without a layer's name.
+// Throws Error: missing, malformed, larger than 2^28 pixels or than the file could hold, without such a layer.
+Loaded read(const std::filesystem::path& path, const std::string& layer = "");
 
 } // namespace image

@@ -73,9 +73,9 @@ void Chain::step()
     ++frame_;
     if (cameraAt_) renderer_.setCamera(cameraAt_(frame_ - 1));
     renderer_.renderFrame();
-    if (isPowerOfTwo(frame_ + 1)) before_ = renderer_.readFrame();
+    if (isPowerOfTwo(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
     if (frame_ == 1 || !isPowerOfTwo(frame_)) return;
-    const image::Image now = renderer_.readFrame();
+    const image::Image now = renderer_.read(LAST_FRAME);
     if (!cameraAt_) {
         points_.push_back(pointOf(frame_, before_.pixels, now.pixels, runs));
         return;
@@ -116,7 +116,7 @@ void LawMeter::step()
 {
     const size_t pixels = emission_.pixels.size();
     renderer_.renderFrame();
-    const image::Image frame = renderer_.readFrame();
+    const image::Image frame = renderer_.read(LAST_FRAME);
     CHECK_EQ(frame.pixels.size(), runs_ * pixels);
     ++frames_;
     for (size_t i = 0; i < frame.pixels.size(); ++i) {

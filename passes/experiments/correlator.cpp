@@ -36,7 +36,7 @@ Correlator::Correlator(std::unique_ptr<Renderer> emitters, const Settings& base,
 {
     if (cameraAt_) emitters_->setCamera(cameraAt_(0));
     emitters_->renderFrame();
-    emission_ = emitters_->readFrame();
+    emission_ = emitters_->read(LAST_FRAME);
 
     subjects_.push_back({.name = PATH_TRACER, .settings = base});
     subjects_.front().settings.method = Method::Pt;

@@ -78,7 +78,7 @@ Repeat Race::run(uint64_t seed, References& references, const std::function<void
         }
     }
     for (Runner& runner : runners_) {
-        repeat.finals.push_back(cameraAt_ ? runner.renderer->readFrame() : runner.renderer->readMean());
+        repeat.finals.push_back(runner.renderer->read(cameraAt_ ? LAST_FRAME : MEAN));
         for (const auto& [stage, count] : runner.renderer->stats().nonFinite) repeat.nonFinite += count;
     }
     repeat.complete = true;
@@ -128,8 +128,8 @@ bool Race::measure(uint32_t method, References& references, Repeat& repeat)
         sample.error = image::without(reference->error, image::measure(reference->picture, picture));
         repeat.samples.push_back(sample);
     };
-    if (!cameraAt_) add(true, renderer.readMean());
-    add(false, renderer.readFrame());
+    if (!cameraAt_) add(true, renderer.read(MEAN));
+    add(false, renderer.read(LAST_FRAME));
     return true;
 }
 

@@ -94,7 +94,7 @@ bool ReferenceTracer::step(uint64_t length)
 {
     renderer_->renderFrame();
     if (renderer_->frameCount() != length) return false;
-    mean_.add(renderer_->readMean());
+    mean_.add(renderer_->read(MEAN));
     begin();
     return true;
 }
@@ -135,7 +135,7 @@ const Reference* References::after(uint64_t frames)
     renderer.apply(settings_); // with the seed that no batch has
     renderer.reset();
     renderer.renderFrame();
-    const std::vector<glm::vec3> pixels = renderer.readMean().pixels;
+    const std::vector<glm::vec3> pixels = renderer.read(MEAN).pixels;
     const std::string text =
         fmt::format("{} {} {}", hash(settings_), options_.precision.error, options_.precision.maxFrames);
     const std::string key =

@@ -133,7 +133,7 @@ Figures measure(gpu::Device& device, const ExtremeCase& extreme, passes::Method 
                 renderer.renderFrame();
             }
         }
-        runs.add(renderer.readColor());
+        runs.add(renderer.read(passes::colorOf(renderer.settings())));
         if (independent) continue;
         for (const auto& [stage, count] : renderer.stats().nonFinite) stats.nonFinite[stage] += count;
     }

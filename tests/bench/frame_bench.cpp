@@ -92,7 +92,7 @@ image::Image tracedReference(gpu::Device& device, const scene::Scene& scene, con
     passes::Renderer renderer(device, scene, settings);
     renderer.setCamera(camera);
     for (uint32_t frame = 0; frame < options.reference; ++frame) renderer.renderFrame();
-    return renderer.readMean();
+    return renderer.read(passes::MEAN);
 }
 
 void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options, const image::Image& reference,
@@ -112,7 +112,7 @@ void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options,
     const double processor = double(std::clock() - start) / CLOCKS_PER_SEC;
     c.stats = c.renderer->stats();
     if (round == 0) return; // drivers compile at the first dispatch
-    if (options.reference > 0) c.errors.push_back(relativeError(c.renderer->readFrame(), reference));
+    if (options.reference > 0) c.errors.push_back(relativeError(c.renderer->read(passes::LAST_FRAME), reference));
     double total = 0;
     for (const auto& [stage, ms] : c.stats.stageMilliseconds) {
         c.milliseconds[stage].push_back(ms);

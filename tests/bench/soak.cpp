@@ -104,7 +104,7 @@ uint64_t render(gpu::Device& device, const Piece& piece, uint64_t& unfinite)
     renderer.apply(settings);
     renderUntil(FRAMES);
     for (const auto& [stage, count] : renderer.stats().nonFinite) unfinite += count;
-    const image::Image last = renderer.readFrame(), mean = renderer.readMean();
+    const image::Image last = renderer.read(passes::LAST_FRAME), mean = renderer.read(passes::MEAN);
     return fingerprint(std::as_bytes(std::span(mean.pixels)), fingerprint(std::as_bytes(std::span(last.pixels))));
 }
 

@@ -108,7 +108,9 @@ std::vector<File> seeds(const std::string& target)
 {
     if (target == "gltf") return gltf();
     if (target == "png") return {image::encodePng(2, 1, std::vector<uint8_t>{1, 2, 3, 4, 5, 6}, {{"seed", "0"}})};
-    if (target == "exr") return {image::encodeExr(picture(), {{"seed", "0"}})};
+    if (target == "exr")
+        return {image::encodeExr(picture(), {{"seed", "0"}}),
+                image::encodeExr(picture(), {}, std::vector<image::Layer>{{"layer", "RGB", picture()}})};
     if (target == "hdr") return hdr();
     if (target == "preset") return {bytesOf(passes::toJson(passes::Settings{}).dump())};
     if (target == "camera-path") return cameraPath();

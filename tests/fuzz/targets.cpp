@@ -75,6 +75,10 @@ void exr(Bytes bytes)
     image::Metadata metadata;
     const image::Image picture = image::decodeExr(bytes, "x", &metadata);
     CHECK_EQ(picture.pixels.size(), size_t{picture.width} * picture.height);
+    try {
+        image::decodeExr(bytes, "x", nullptr, nullptr, "layer");
+    } catch (const Error&) { // there is none
+    }
 }
 
 void hdr(Bytes bytes)

@@ -46,7 +46,7 @@ double Stand::chancesPerRun() const
 
 void Stand::take(passes::Renderer& renderer, const TakeRun& takeRun)
 {
-    const image::Image all = renderer.readFrame();
+    const image::Image all = renderer.read(passes::LAST_FRAME);
     const size_t pixels = size_t{case_.settings.width} * case_.settings.height;
     for (size_t at = 0; at < all.pixels.size(); at += pixels) takeRun(std::span(all.pixels).subspan(at, pixels));
 }

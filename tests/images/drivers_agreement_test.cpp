@@ -87,7 +87,7 @@ std::vector<image::Image> picturesOn(Driver& driver, const scene::Scene& scene, 
             renderer.setCamera(cameraAt(frame));
             renderer.renderFrame();
         }
-        pictures.push_back(renderer.readFrame());
+        pictures.push_back(renderer.read(passes::LAST_FRAME));
         for (const auto& [stage, count] : renderer.stats().nonFinite)
             EXPECT_EQ(count, 0u) << driver.device.adapter().driver << " " << stage;
     }

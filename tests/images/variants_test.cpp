@@ -22,7 +22,7 @@ class Variants : public GpuTest
     {
         passes::Renderer renderer(device(), test.make(), test.settings(), {}, features);
         for (int i = 0; i < 2; ++i) renderer.renderFrame();
-        return renderer.readMean();
+        return renderer.read(passes::MEAN);
     }
 };
 

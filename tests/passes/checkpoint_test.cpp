@@ -147,8 +147,8 @@ TEST_F(CheckpointOfRenderer, GoesOnToTheSameBitsWhetherTheCameraRestsOrMoves)
         second.restore(passes::readCheckpoint(directory / "x.ckpt").state);
         EXPECT_EQ(second.frameCount(), 3u);
         render(second, cameraAt, 5);
-        EXPECT_EQ(second.readMean().pixels, whole.readMean().pixels);
-        EXPECT_EQ(second.readFrame().pixels, whole.readFrame().pixels);
+        EXPECT_EQ(second.read(passes::MEAN).pixels, whole.read(passes::MEAN).pixels);
+        EXPECT_EQ(second.read(passes::LAST_FRAME).pixels, whole.read(passes::LAST_FRAME).pixels);
         EXPECT_EQ(second.stats().rays, whole.stats().rays);
     }
 }
@@ -168,7 +168,7 @@ TEST_F(CheckpointOfRenderer, ForgedContentsDoNoHarm)
         for (const double degrees : {0.0, 3.0}) { // shifts are left out while the camera rests
             renderer.restore(state);
             render(renderer, passes::cameraOrbit(scene.cameras.at(0), degrees), 3);
-            EXPECT_EQ(renderer.readFrame().pixels.size(), 24u * 20u);
+            EXPECT_EQ(renderer.read(passes::LAST_FRAME).pixels.size(), 24u * 20u);
         }
     }
 }

@@ -100,7 +100,7 @@ TEST_F(InspectorTest, PathsLeadFromThePixelToLight)
         dark.height *= ENLARGED;
         passes::Renderer emitters(renderer, dark);
         emitters.renderFrame();
-        const image::Image emission = emitters.readFrame();
+        const image::Image emission = emitters.read(passes::LAST_FRAME);
         const uint32_t pixels = settings.width * settings.height;
         uint32_t spots = 0, windows = 0, joined = 0, foreign = 0;
         for (uint32_t pixel = 0; pixel < pixels; pixel += 13) {

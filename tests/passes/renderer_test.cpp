@@ -34,7 +34,7 @@ class RendererTest : public RendererFixture
     static Pixels frames(Renderer& renderer, int count)
     {
         for (int i = 0; i < count; ++i) renderer.renderFrame();
-        return renderer.readMean().pixels;
+        return renderer.read(passes::MEAN).pixels;
     }
 
     const support::TestScene test_ = sceneNamed("Glossy");
@@ -65,7 +65,7 @@ TEST_F(RendererTest, GivesOtherPixelsForOtherSeedsAndFrames)
     const Pixels pixels = frames(first, 1);
     EXPECT_NE(pixels, frames(second, 1));
     first.renderFrame();
-    EXPECT_NE(pixels, first.readFrame().pixels);
+    EXPECT_NE(pixels, first.read(passes::LAST_FRAME).pixels);
 }
 
 TEST_F(RendererTest, MeansAreOfAllFrames)
@@ -74,17 +74,18 @@ TEST_F(RendererTest, MeansAreOfAllFrames)
     std::vector<glm::dvec3> sum(size_t{settings_.width} * settings_.height, glm::dvec3(0));
     for (int i = 0; i < 5; ++i) {
         renderer.renderFrame();
-        const Pixels frame = renderer.readFrame().pixels;
+        const Pixels frame = renderer.read(passes::LAST_FRAME).pixels;
         for (size_t p = 0; p < sum.size(); ++p) sum[p] += glm::dvec3(frame[p]) / 5.0;
     }
-    const Pixels mean = renderer.readMean().pixels;
+    const Pixels mean = renderer.read(passes::MEAN).pixels;
     for (size_t p = 0; p < sum.size(); ++p) ASSERT_LT(glm::distance(sum[p], glm::dvec3(mean[p])), 1e-6) << p;
-    EXPECT_EQ(renderer.readColor().pixels, mean);
+    EXPECT_EQ(renderer.read(passes::colorOf(renderer.settings())).pixels, mean);
     passes::Settings last = settings_;
     last.average = false;
     Renderer unaveraged = make(last);
     frames(unaveraged, 2);
-    EXPECT_EQ(unaveraged.readColor().pixels, unaveraged.readFrame().pixels);
+    EXPECT_EQ(unaveraged.read(passes::colorOf(unaveraged.settings())).pixels,
+              unaveraged.read(passes::LAST_FRAME).pixels);
 }
 
 TEST_F(RendererTest, CountsItsRaysAndFindsNothingThatIsNotFinite)
@@ -273,8 +274,8 @@ TEST_F(RendererTest, TheFirstOfManyRunsIsTheLoneRun)
                 renderer->setCamera(camera);
                 renderer->renderFrame();
             }
-        const Pixels one = lone.readFrame().pixels;
-        const image::Image all = many.readFrame();
+        const Pixels one = lone.read(passes::LAST_FRAME).pixels;
+        const image::Image all = many.read(passes::LAST_FRAME);
         ASSERT_EQ(all.height, 3 * settings.height);
         EXPECT_EQ(one, Pixels(all.pixels.begin(), all.pixels.begin() + ptrdiff_t(one.size())));
         EXPECT_NE(one,
@@ -296,7 +297,7 @@ TEST_F(RendererTest, RunsAreIndependentAndAlike)
     std::vector<Pixels> frames;
     for (int frame = 0; frame < FRAMES; ++frame) {
         renderer.renderFrame();
-        frames.push_back(renderer.readFrame().pixels);
+        frames.push_back(renderer.read(passes::LAST_FRAME).pixels);
         for (size_t i = 0; i < values.size(); ++i) values[i].add(frames.back()[i].g);
     }
     statistics::Moments correlation;

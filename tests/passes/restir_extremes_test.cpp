@@ -90,7 +90,7 @@ TEST_P(RestirExtremes, AreFinite)
         for (uint64_t frame = 0; frame < 24; ++frame) {
             renderer.setCamera(cameraAt(frame));
             renderer.renderFrame();
-            for (const glm::vec3& pixel : renderer.readFrame().pixels) {
+            for (const glm::vec3& pixel : renderer.read(passes::LAST_FRAME).pixels) {
                 ASSERT_TRUE(std::isfinite(pixel.r + pixel.g + pixel.b) && pixel.r >= 0 && pixel.g >= 0 && pixel.b >= 0);
                 sum += double(pixel.r) + pixel.g + pixel.b;
             }
@@ -122,7 +122,7 @@ TEST_F(RestirDrift, StaysBelowAMillionth)
         settings.average = method == passes::Method::Pt;
         passes::Renderer renderer(device(), scene, settings);
         for (uint64_t i = 0; i < frames; ++i) renderer.renderFrame();
-        return renderer.readColor().pixels;
+        return renderer.read(passes::colorOf(renderer.settings())).pixels;
     };
     const std::vector<glm::vec3> mean = pictureOf(passes::Method::Pt),
                                  reservoirs = pictureOf(passes::Method::RgbRestir);

@@ -68,7 +68,7 @@ class RestirTest : public RendererFixture
             renderer.renderFrame();
         }
         for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
-        return renderer.readFrame().pixels;
+        return renderer.read(passes::LAST_FRAME).pixels;
     }
 
     // The path tracer's frames one by one.
@@ -78,7 +78,7 @@ class RestirTest : public RendererFixture
         std::vector<Pixels> list;
         for (int i = 0; i < frames; ++i) {
             renderer.renderFrame();
-            list.push_back(renderer.readFrame().pixels);
+            list.push_back(renderer.read(passes::LAST_FRAME).pixels);
         }
         return list;
     }
@@ -115,7 +115,7 @@ TEST_F(RestirTest, RgbIsTheRunningMeanOfThePathTracer)
         for (const scene::FeatureSet features : {scene::FeatureSet::Needed, scene::FeatureSet::Everything}) {
             Renderer renderer(device(), scene, resting(Method::RgbRestir), {}, features);
             for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
-            const Pixels picture = renderer.readFrame().pixels;
+            const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
             size_t wrong = 0;
             for (size_t p = 0; p < picture.size(); ++p) {
                 const glm::dvec3 mean = meanOver(traced, FRAMES, p);
@@ -140,7 +140,7 @@ TEST_F(RestirTest, HybridShiftsHomeAreIdentities)
         settings.shift = Shift::Hybrid;
         Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Everything);
         for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
-        const Pixels picture = renderer.readFrame().pixels;
+        const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
         size_t wrong = 0;
         for (size_t p = 0; p < picture.size(); ++p) {
             const glm::dvec3 mean = meanOver(traced, FRAMES, p);
@@ -158,7 +158,7 @@ TEST_F(RestirTest, LuminanceIsTheRunningMeanOfThePathTracersLuminance)
     const std::vector<Pixels> traced = pathTraced(scene, FRAMES);
     Renderer renderer(device(), scene, resting(Method::RestirPt));
     for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
-    const Pixels picture = renderer.readFrame().pixels;
+    const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
     size_t otherChannels = 0;
     for (size_t p = 0; p < picture.size(); ++p) {
         const glm::dvec3 mean = meanOver(traced, FRAMES, p);
@@ -198,7 +198,7 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
                 renderer.setCamera(cameraAt(frame));
                 renderer.renderFrame();
             }
-            pictures[size_t(color)] = renderer.readFrame().pixels;
+            pictures[size_t(color)] = renderer.read(passes::LAST_FRAME).pixels;
             for (auto& [name, bytes] : renderer.save().buffers) {
                 if (name == "History") histories[size_t(color)] = std::move(bytes);
                 if (name == "HistoryPaths") paths[size_t(color)] = std::move(bytes);
@@ -232,7 +232,7 @@ TEST_F(RestirTest, WeightedColorWithoutReuseIsThePathTracer)
         Renderer renderer(device(), scene, settings);
         renderer.renderFrame();
         renderer.renderFrame();
-        const Pixels picture = renderer.readFrame().pixels;
+        const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
         for (size_t p = 0; p < picture.size(); ++p)
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], traced[1][p][c], 4e-6 * traced[1][p][c]) << p;
     }
@@ -250,7 +250,7 @@ TEST_F(RestirTest, WeightedColorAtRestIsTheMeanOfTheNewSampleAndTheOldPicture)
         settings.temporal = temporal;
         Renderer renderer(device(), scene, settings);
         for (int i = 0; i < frames; ++i) renderer.renderFrame();
-        return renderer.readFrame().pixels;
+        return renderer.read(passes::LAST_FRAME).pixels;
     };
     const Pixels before = lastOf(Color::Chosen, true, FRAMES - 1), single = lastOf(Color::Chosen, false, FRAMES),
                  weighted = lastOf(Color::Weighted, true, FRAMES);
@@ -272,7 +272,7 @@ TEST_F(RestirTest, ConfidenceIsCapped)
     settings.maxConfidence = MAX_CONFIDENCE;
     Renderer renderer(device(), scene, settings);
     for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
-    const Pixels picture = renderer.readFrame().pixels;
+    const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
     for (size_t p = 0; p < picture.size(); ++p) {
         glm::dvec3 expected(0);
         for (int i = 0; i < FRAMES; ++i)
@@ -292,7 +292,7 @@ TEST_F(RestirTest, WithoutReuseIsThePathTracer)
         Renderer renderer(device(), scene, settings);
         renderer.renderFrame();
         renderer.renderFrame();
-        const Pixels picture = renderer.readFrame().pixels;
+        const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
         for (size_t p = 0; p < picture.size(); ++p)
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], traced[1][p][c], 4e-6 * traced[1][p][c]) << p;
     }

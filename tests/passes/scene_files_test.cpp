@@ -26,7 +26,7 @@ class SceneFiles : public RendererFixture
         settings.height = 9;
         passes::Renderer renderer(device(), scene, settings);
         for (int frame = 0; frame < 2; ++frame) renderer.renderFrame();
-        const image::Image picture = renderer.readColor();
+        const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
         for (const glm::vec3& pixel : picture.pixels) {
             for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(pixel[c]) && pixel[c] >= 0) << pixel[c];
         }

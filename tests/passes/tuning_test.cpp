@@ -49,7 +49,7 @@ class TuningOfRenderer : public RendererFixture
                 renderer.setCamera(cameraAt(frame));
                 renderer.renderFrame();
             }
-            result.pictures.push_back(renderer.readFrame());
+            result.pictures.push_back(renderer.read(passes::LAST_FRAME));
             result.stats.push_back(renderer.stats());
         }
         for (const std::string& message : device.takeValidationMessages()) ADD_FAILURE() << tuning << ": " << message;

@@ -126,7 +126,7 @@ TEST_F(LightReports, EveryTexelOfASky)
         pipelines = renderer.pipelines();
         for (uint32_t frame = 0; frame < frames; ++frame) renderer.renderFrame();
         for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
-        return renderer.readMean();
+        return renderer.read(passes::MEAN);
     };
     uint32_t right = 0;
     std::set<std::vector<float>> seen;

@@ -34,7 +34,7 @@ PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, cons
             if (cameraAt) renderer.setCamera(cameraAt(frame));
             renderer.renderFrame();
         }
-        const image::Image all = renderer.readColor();
+        const image::Image all = renderer.read(passes::colorOf(renderer.settings()));
         image::Image one{.width = settings.width, .height = settings.height};
         const auto pixels = std::ptrdiff_t(size_t{one.width} * one.height);
         for (uint32_t i = 0; i < batch && run < runs; ++i, ++run) {

@@ -1,6 +1,7 @@
 // compare REFERENCE IMAGE...: error figures and difference pictures; with limits, a gate.
 
 #include "engine/base/error.h"
+#include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "engine/image/plane.h"
 #include "ui/cli/number_range.h"
@@ -83,14 +84,23 @@ Json CompareCommand::toJson(const ComparedPicture& picture) const
             {"gates", gates}};
 }
 
-// With a warning about values below 0, which are rarely meant.
-ComparedPicture load(const std::string& file)
+// "a.exr:frame" is the layer "frame" of a.exr.
+std::pair<std::string, std::string> fileAndLayer(const std::string& name)
 {
-    ComparedPicture picture{file, image::read(file), {}};
+    const size_t colon = name.rfind(':');
+    if (colon == std::string::npos || files::extensionOf(name.substr(0, colon)) != ".exr") return {name, ""};
+    return {name.substr(0, colon), name.substr(colon + 1)};
+}
+
+// With a warning about values below 0, which are rarely meant.
+ComparedPicture load(const std::string& name)
+{
+    const auto [file, layer] = fileAndLayer(name);
+    ComparedPicture picture{name, image::read(file, layer), {}};
     if (const size_t count = image::countBelowZero(picture.loaded.image))
         picture.loaded.warnings.push_back(fmt::format("Picture \"{}\" has {} values below 0: PSNR is of c/(1+|c|); "
                                                       "SSIM and FLIP compare what is below 0 as a picture of its own.",
-                                                      file, count));
+                                                      name, count));
     for (const std::string& warning : picture.loaded.warnings) std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     return picture;
 }
@@ -123,8 +133,8 @@ int CompareCommand::run() const
     NamedFiles named;
     named.writes("--html", html);
     named.writes("--json", json);
-    named.reads("REFERENCE", reference);
-    for (const std::string& file : images) named.reads("IMAGE", file);
+    named.reads("REFERENCE", fileAndLayer(reference).first);
+    for (const std::string& file : images) named.reads("IMAGE", fileAndLayer(file).first);
     if (!html.empty()) requireWritable(html, {".html"});
     if (!json.empty()) requireWritable(json);
 
@@ -155,9 +165,10 @@ int CompareCommand::run() const
 Action setUpCompare(CLI::App& app)
 {
     const auto command = std::make_shared<CompareCommand>();
-    app.add_option("REFERENCE", command->reference, "What the errors are measured against: EXR, HDR, PNG or JPEG.")
+    app.add_option("REFERENCE", command->reference,
+                   "What the errors are measured against: EXR, HDR, PNG or JPEG. FILE.exr:NAME is a layer of an EXR.")
         ->required();
-    app.add_option("IMAGE", command->images, "Pictures of the same size.")->required();
+    app.add_option("IMAGE", command->images, "Pictures of the same size, named likewise.")->required();
     app.add_option("--html", command->html,
                    "Writes a page that needs nothing else: figures, maps of the errors, the worst places enlarged, a "
                    "viewer to flip through the pictures, and the settings in which they differ.")

@@ -1,5 +1,6 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
+#include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "passes/renderer.h"
 #include "ui/cli/checkpoint_options.h"
@@ -11,8 +12,10 @@
 #include "ui/cli/run_report.h"
 #include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
+#include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -31,6 +34,7 @@ double secondsSince(std::chrono::steady_clock::time_point start)
 struct RenderCommand {
     SceneSource scene;
     std::string output, stats;
+    std::vector<std::string> layers;
     bool quiet = false;
     DeviceOptions device;
     MotionOptions motion;
@@ -78,14 +82,20 @@ int RenderCommand::run()
     const auto commandStart = std::chrono::steady_clock::now();
     RunReport report{.scene = scene.name, .settings = settings.read(), .extra = motion.toText()};
     motion.adjust(report.settings, settings);
-    NamedFiles files;
-    files.writes("--output", output);
-    files.writes("--stats", stats);
-    checkpoint.name(files);
-    motion.name(files);
-    settings.name(files, report.settings);
-    files.reads("SCENE", scene.name);
+    NamedFiles named;
+    named.writes("--output", output);
+    named.writes("--stats", stats);
+    checkpoint.name(named);
+    motion.name(named);
+    settings.name(named, report.settings);
+    named.reads("SCENE", scene.name);
     requireWritable(output, {".exr", ".png"});
+    if (!layers.empty() && files::extensionOf(output) != ".exr")
+        throw UsageError("--layers needs an EXR: \"{}\" holds one picture only.", output);
+    const bool mean = std::ranges::find(layers, passes::MEAN.name) != layers.end();
+    if (mean && motion.moving() && !report.settings.average)
+        throw UsageError("--layers mean cannot be combined with a moving camera: the mean of frames seen from "
+                         "different places is no picture.");
     if (!stats.empty()) requireWritable(stats);
     checkpoint.requireWritable();
 
@@ -93,7 +103,7 @@ int RenderCommand::run()
     const auto loadStart = std::chrono::steady_clock::now();
     gpu::Device gpu = device.open(checkpoint.resumes());
     const scene::Scene world = openScene(scene, report.settings, progress);
-    for (const std::filesystem::path& file : world.files) files.reads("SCENE", file);
+    for (const std::filesystem::path& file : world.files) named.reads("SCENE", file);
     const passes::CameraAt cameraAt = motion.read(world, report.settings);
     report.adapter = gpu.adapter();
     report.loadSeconds = secondsSince(loadStart);
@@ -102,10 +112,14 @@ int RenderCommand::run()
 
     renderFrames(renderer, cameraAt, checkpoint, progress, report, commandStart);
     const bool kept = checkpoint.finish(renderer, report.wallSeconds);
-    const image::Image picture = renderer.readColor();
+    const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
-    image::write(output, picture, metadataOf(report));
+    std::vector<image::Layer> more;
+    for (const passes::Output* one : passes::OUTPUTS)
+        if (std::ranges::find(layers, one->name) != layers.end())
+            more.push_back({one->name, one->channels, renderer.read(*one)});
+    image::write(output, picture, metadataOf(report), more);
     if (!stats.empty()) writeText(stats, jsonText(toJson(report), 2) + "\n");
 
     for (const auto& [stage, count] : report.stats.nonFinite)
@@ -128,6 +142,18 @@ Action setUpRender(CLI::App& app)
                    "The picture. EXR: float32 linear RGB. PNG: c/(c+1), then sRGB. Both with all settings inside.")
         ->option_text("FILE.exr|FILE.png")
         ->required();
+    std::vector<std::string> names;
+    std::string meanings;
+    for (const passes::Output* one : passes::OUTPUTS) {
+        names.emplace_back(one->name);
+        meanings += fmt::format("{}{}: {}", meanings.empty() ? "" : "; ", one->name, one->doc);
+    }
+    app.add_option("--layers", command->layers,
+                   "Pictures that the EXR holds besides the one that every program shows, as layers of these names. " +
+                       meanings + ". compare takes a layer as FILE.exr:NAME.")
+        ->option_text("NAME,...")
+        ->delimiter(',')
+        ->check(CLI::IsMember(names));
     app.add_option("--stats", command->stats, "Writes what was done, for programs: times, rays, memory, settings.")
         ->option_text("FILE.json");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");

@@ -128,7 +128,7 @@ ShotPointer Contender::shot(const Order& order)
 {
     auto shot = std::make_shared<Shot>();
     shot->single = order.moving || !renderer_->settings().average;
-    shot->picture = shot->single ? renderer_->readFrame() : renderer_->readMean();
+    shot->picture = renderer_->read(shot->single ? passes::LAST_FRAME : passes::MEAN);
     shot->order = order;
     shot->order.settings = renderer_->settings();
     shot->run = run_;

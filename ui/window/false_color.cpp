@@ -138,7 +138,7 @@ int reservoirCount(const Shot& shot)
 ScreenPicture falseColors(const Shot& shot, FalseColor view, int reservoir)
 {
     ScreenPicture screen{.width = shot.picture.width, .height = shot.picture.height};
-    screen.rgba.resize(shot.picture.pixels.size() * 4);
+    screen.pixels.reserve(shot.picture.pixels.size());
     const int count = reservoirCount(shot), c = std::clamp(reservoir, 0, std::max(count - 1, 0));
     const bool numbers = view != FalseColor::Agreement && view != FalseColor::NotFinite &&
                          view != FalseColor::ShiftOutcomes && view != FalseColor::Floor;
@@ -156,8 +156,7 @@ ScreenPicture falseColors(const Shot& shot, FalseColor view, int reservoir)
             if (const std::optional<float> value = valueOf(cell, view, c))
                 color = std::isfinite(*value) ? ramp((*value - range.low) / (range.high - range.low)) : ALARM;
         }
-        for (int i = 0; i < 3; ++i) screen.rgba[4 * pixel + size_t(i)] = uint8_t(std::lround(255 * color[i]));
-        screen.rgba[4 * pixel + 3] = 255;
+        screen.pixels.push_back({color, 1});
     }
     return screen;
 }

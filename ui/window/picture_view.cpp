@@ -20,13 +20,21 @@ size_t pixelAt(const From& from, uint32_t x, uint32_t y, uint32_t width, uint32_
     return size_t(row * from.width + column);
 }
 
-ScreenPicture screenOf(const Pictures& pictures, Source source, const View& view, const Tone& tone)
+ScreenPicture screenOf(const image::Image& picture)
+{
+    ScreenPicture screen{.width = picture.width, .height = picture.height};
+    screen.pixels.reserve(picture.pixels.size());
+    for (const glm::vec3& pixel : picture.pixels) screen.pixels.push_back({pixel});
+    return screen;
+}
+
+ScreenPicture screenOf(const Pictures& pictures, Source source, const View& view)
 {
     const ShotPointer shot = pictures.shotOf(source);
     if (shot && view.falseColor == FalseColor::Floor)
-        if (const Floor* floor = pictures.floorOf(source)) return toScreen(floor->deviation, tone);
+        if (const Floor* floor = pictures.floorOf(source)) return screenOf(floor->deviation);
     if (shot && view.falseColor != FalseColor::Off) return falseColors(*shot, view.falseColor, view.reservoir);
-    return toScreen(*pictures.of(source), tone);
+    return screenOf(*pictures.of(source));
 }
 
 void split(ScreenPicture& left, const ScreenPicture& right, float wipe)
@@ -34,8 +42,7 @@ void split(ScreenPicture& left, const ScreenPicture& right, float wipe)
     const auto first = uint32_t(std::lround(wipe * float(left.width)));
     for (uint32_t y = 0; y < left.height; ++y)
         for (uint32_t x = first; x < left.width; ++x)
-            std::copy_n(&right.rgba[4 * pixelAt(right, x, y, left.width, left.height)], 4,
-                        &left.rgba[4 * (size_t{y} * left.width + x)]);
+            left.pixels[size_t{y} * left.width + x] = right.pixels[pixelAt(right, x, y, left.width, left.height)];
 }
 
 image::Image difference(const image::Image& left, const image::Image& right)
@@ -66,15 +73,15 @@ const Floor* Pictures::floorOf(Source source) const
     return source == Source::Reference ? nullptr : floors[source == Source::A ? A : B].get();
 }
 
-ScreenPicture compose(const Pictures& pictures, const View& view, const Tone& tone)
+ScreenPicture compose(const Pictures& pictures, const View& view)
 {
     const image::Image *left = pictures.of(view.left()), *right = pictures.of(view.right());
     if (!left && !right) return {};
-    if (!left) return screenOf(pictures, view.right(), view, tone);
-    if (!right || view.layout == Layout::One) return screenOf(pictures, view.left(), view, tone);
-    if (view.layout == Layout::Difference) return toScreen(difference(*left, *right), tone);
-    ScreenPicture screen = screenOf(pictures, view.left(), view, tone);
-    split(screen, screenOf(pictures, view.right(), view, tone), view.wipe);
+    if (!left) return screenOf(pictures, view.right(), view);
+    if (!right || view.layout == Layout::One) return screenOf(pictures, view.left(), view);
+    if (view.layout == Layout::Difference) return screenOf(difference(*left, *right));
+    ScreenPicture screen = screenOf(pictures, view.left(), view);
+    split(screen, screenOf(pictures, view.right(), view), view.wipe);
     return screen;
 }
 

@@ -51,6 +51,6 @@ struct Pictures {
 };
 
 // Empty (0 x 0) while there is no picture. Where one of two is missing, the other stands alone.
-ScreenPicture compose(const Pictures& pictures, const View& view, const Tone& tone);
+ScreenPicture compose(const Pictures& pictures, const View& view);
 
 } // namespace ui

@@ -3,6 +3,8 @@
 #include "engine/base/error.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 
 #define GLFW_INCLUDE_NONE
@@ -49,13 +51,31 @@ void change(VkCommandBuffer commands, VkImage image, const Use& from, const Use&
 
 } // namespace
 
-uint32_t Presenter::memoryType(uint32_t allowed, VkMemoryPropertyFlags properties) const
+VkDeviceMemory Presenter::allocate(const VkMemoryRequirements& need, VkMemoryPropertyFlags properties) const
 {
-    VkPhysicalDeviceMemoryProperties memory;
-    vkGetPhysicalDeviceMemoryProperties(physical_, &memory);
-    for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-        if ((allowed >> i & 1) != 0 && (memory.memoryTypes[i].propertyFlags & properties) == properties) return i;
+    VkPhysicalDeviceMemoryProperties kinds;
+    vkGetPhysicalDeviceMemoryProperties(physical_, &kinds);
+    for (uint32_t i = 0; i < kinds.memoryTypeCount; ++i) {
+        if ((need.memoryTypeBits >> i & 1) == 0 || (kinds.memoryTypes[i].propertyFlags & properties) != properties)
+            continue;
+        const VkMemoryAllocateInfo info = {
+            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = need.size, .memoryTypeIndex = i};
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+        checkVulkan(vkAllocateMemory(device_, &info, nullptr, &memory), "vkAllocateMemory");
+        return memory;
+    }
     throw Error("The window's device {} has no memory for a picture.", deviceName_);
+}
+
+void Presenter::createBlock(Block& block, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                            VkMemoryPropertyFlags properties)
+{
+    const VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
+    checkVulkan(vkCreateBuffer(device_, &info, nullptr, &block.buffer), "vkCreateBuffer");
+    VkMemoryRequirements need;
+    vkGetBufferMemoryRequirements(device_, block.buffer, &need);
+    block.memory = allocate(need, properties);
+    checkVulkan(vkBindBufferMemory(device_, block.buffer, block.memory, 0), "vkBindBufferMemory");
 }
 
 void Presenter::createSwapchain()
@@ -132,12 +152,69 @@ void Presenter::destroyPicture()
 {
     vkDestroyImage(device_, picture_, nullptr);
     vkFreeMemory(device_, pictureMemory_, nullptr);
-    vkDestroyBuffer(device_, staging_, nullptr);
-    vkFreeMemory(device_, stagingMemory_, nullptr);
+    vkDestroyBufferView(device_, linearView_, nullptr);
+    for (Block* block : {&linear_, &screen_}) {
+        vkDestroyBuffer(device_, block->buffer, nullptr);
+        vkFreeMemory(device_, block->memory, nullptr);
+        *block = {};
+    }
     picture_ = VK_NULL_HANDLE;
-    staging_ = VK_NULL_HANDLE;
-    pictureMemory_ = stagingMemory_ = VK_NULL_HANDLE;
+    pictureMemory_ = VK_NULL_HANDLE;
+    linearView_ = VK_NULL_HANDLE;
     pictureExtent_ = {0, 0};
+}
+
+void Presenter::createPicture(uint32_t width, uint32_t height)
+{
+    const VkImageCreateInfo imageInfo = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = VK_FORMAT_R8G8B8A8_UNORM,
+        .extent = {width, height, 1},
+        .mipLevels = 1,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+    };
+    checkVulkan(vkCreateImage(device_, &imageInfo, nullptr, &picture_), "vkCreateImage");
+    VkMemoryRequirements need;
+    vkGetImageMemoryRequirements(device_, picture_, &need);
+    pictureMemory_ = allocate(need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    checkVulkan(vkBindImageMemory(device_, picture_, pictureMemory_, 0), "vkBindImageMemory");
+
+    const VkDeviceSize pixels = VkDeviceSize{width} * height;
+    VkPhysicalDeviceProperties device;
+    vkGetPhysicalDeviceProperties(physical_, &device);
+    if (pixels >= device.limits.maxTexelBufferElements)
+        throw Error("The window's device {} shows less than {} pixels.", deviceName_,
+                    device.limits.maxTexelBufferElements);
+    createBlock(linear_, (1 + pixels) * sizeof(ScreenPixel), VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
+                VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    checkVulkan(vkMapMemory(device_, linear_.memory, 0, VK_WHOLE_SIZE, 0, &linearBytes_), "vkMapMemory");
+    createBlock(screen_, pixels * sizeof(uint32_t),
+                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    const VkBufferViewCreateInfo viewInfo = {.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                             .buffer = linear_.buffer,
+                                             .format = VK_FORMAT_R32G32B32A32_UINT,
+                                             .range = VK_WHOLE_SIZE};
+    checkVulkan(vkCreateBufferView(device_, &viewInfo, nullptr, &linearView_), "vkCreateBufferView");
+    const VkDescriptorBufferInfo written = {screen_.buffer, 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet writes[] = {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                      .dstSet = displaySet_,
+                                      .dstBinding = 0,
+                                      .descriptorCount = 1,
+                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
+                                      .pTexelBufferView = &linearView_},
+                                     {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                      .dstSet = displaySet_,
+                                      .dstBinding = 1,
+                                      .descriptorCount = 1,
+                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                      .pBufferInfo = &written}};
+    vkUpdateDescriptorSets(device_, uint32_t(std::size(writes)), writes, 0, nullptr);
+    pictureExtent_ = {width, height};
 }
 
 void Presenter::setPicture(const ScreenPicture& picture)
@@ -145,51 +222,39 @@ void Presenter::setPicture(const ScreenPicture& picture)
     checkVulkan(vkWaitForFences(device_, 1, &idle_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     if (picture.width != pictureExtent_.width || picture.height != pictureExtent_.height) {
         destroyPicture();
-        const VkImageCreateInfo imageInfo = {
-            .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-            .imageType = VK_IMAGE_TYPE_2D,
-            .format = VK_FORMAT_R8G8B8A8_UNORM,
-            .extent = {picture.width, picture.height, 1},
-            .mipLevels = 1,
-            .arrayLayers = 1,
-            .samples = VK_SAMPLE_COUNT_1_BIT,
-            .tiling = VK_IMAGE_TILING_OPTIMAL,
-            .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-        };
-        checkVulkan(vkCreateImage(device_, &imageInfo, nullptr, &picture_), "vkCreateImage");
-        VkMemoryRequirements need;
-        vkGetImageMemoryRequirements(device_, picture_, &need);
-        VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                       .allocationSize = need.size,
-                                       .memoryTypeIndex =
-                                           memoryType(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
-        checkVulkan(vkAllocateMemory(device_, &memory, nullptr, &pictureMemory_), "vkAllocateMemory");
-        checkVulkan(vkBindImageMemory(device_, picture_, pictureMemory_, 0), "vkBindImageMemory");
-
-        const VkBufferCreateInfo bufferInfo = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                               .size = picture.rgba.size(),
-                                               .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
-        checkVulkan(vkCreateBuffer(device_, &bufferInfo, nullptr, &staging_), "vkCreateBuffer");
-        vkGetBufferMemoryRequirements(device_, staging_, &need);
-        memory.allocationSize = need.size;
-        memory.memoryTypeIndex =
-            memoryType(need.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        checkVulkan(vkAllocateMemory(device_, &memory, nullptr, &stagingMemory_), "vkAllocateMemory");
-        checkVulkan(vkBindBufferMemory(device_, staging_, stagingMemory_, 0), "vkBindBufferMemory");
-        checkVulkan(vkMapMemory(device_, stagingMemory_, 0, VK_WHOLE_SIZE, 0, &stagingBytes_), "vkMapMemory");
-        pictureExtent_ = {picture.width, picture.height};
+        createPicture(picture.width, picture.height);
     }
-    std::memcpy(stagingBytes_, picture.rgba.data(), picture.rgba.size());
-    uploadDue_ = true;
+    std::memcpy(static_cast<ScreenPixel*>(linearBytes_) + 1, picture.pixels.data(),
+                picture.pixels.size() * sizeof(ScreenPixel));
+    displayDue_ = true;
+}
+
+void Presenter::setTone(const Tone& tone)
+{
+    displayDue_ |= tone != tone_;
+    tone_ = tone;
 }
 
 void Presenter::recordPicture(VkCommandBuffer commands, VkImage target, const Rectangle& area) const
 {
-    if (uploadDue_) {
+    if (displayDue_) {
+        const uint32_t header[] = {pictureExtent_.width, pictureExtent_.height,
+                                   std::bit_cast<uint32_t>(std::exp2(tone_.stops)), uint32_t(tone_.curve)};
+        static_assert(sizeof(header) == sizeof(ScreenPixel));
+        std::memcpy(linearBytes_, header, sizeof(header));
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, display_);
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, displayPipelineLayout_, 0, 1, &displaySet_, 0,
+                                nullptr);
+        vkCmdDispatch(commands, (pictureExtent_.width + 7) / 8, (pictureExtent_.height + 7) / 8, 1);
+        const VkMemoryBarrier shown = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                                       .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                                       .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT};
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1,
+                             &shown, 0, nullptr, 0, nullptr);
         const VkBufferImageCopy region = {.imageSubresource = LAYER,
                                           .imageExtent = {pictureExtent_.width, pictureExtent_.height, 1}};
         change(commands, picture_, UNDEFINED, WRITTEN);
-        vkCmdCopyBufferToImage(commands, staging_, picture_, WRITTEN.layout, 1, &region);
+        vkCmdCopyBufferToImage(commands, screen_.buffer, picture_, WRITTEN.layout, 1, &region);
         change(commands, picture_, WRITTEN, READ);
     }
     const VkImageBlit blit = {
@@ -231,7 +296,7 @@ void Presenter::draw(ImDrawData* widgets, const Rectangle& pictureArea)
     if (picture_ && inside) {
         change(commands_, target.image, WRITTEN, WRITTEN);
         recordPicture(commands_, target.image, pictureArea);
-        uploadDue_ = false;
+        displayDue_ = false;
     }
     change(commands_, target.image, WRITTEN, DRAWN);
     const VkRenderPassBeginInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,

@@ -30,6 +30,7 @@ class Presenter
     Presenter& operator=(const Presenter&) = delete;
 
     void setPicture(const ScreenPicture& picture);
+    void setTone(const Tone& tone);
     // Shows both. Nothing happens while the window has no area. Throws Error: the device is lost.
     void draw(ImDrawData* widgets, const Rectangle& pictureArea);
     const std::string& deviceName() const { return deviceName_; }
@@ -42,16 +43,24 @@ class Presenter
         VkSemaphore rendered = VK_NULL_HANDLE;
     };
 
+    struct Block { // a buffer with memory of its own
+        VkBuffer buffer = VK_NULL_HANDLE;
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+    };
+
     void createInstance();
     void chooseDevice();
     void createDevice();
     void createRenderPass();
+    void createDisplay();
     void startWidgets();
     void createSwapchain();
     void destroySwapchain();
     void destroyPicture();
     void destroy();
-    uint32_t memoryType(uint32_t allowed, VkMemoryPropertyFlags properties) const;
+    VkDeviceMemory allocate(const VkMemoryRequirements& need, VkMemoryPropertyFlags properties) const;
+    void createBlock(Block& block, VkDeviceSize bytes, VkBufferUsageFlags usage, VkMemoryPropertyFlags properties);
+    void createPicture(uint32_t width, uint32_t height);
     void recordPicture(VkCommandBuffer commands, VkImage target, const Rectangle& area) const;
 
     GLFWwindow* window_;
@@ -78,10 +87,15 @@ class Presenter
     VkExtent2D pictureExtent_ = {0, 0};
     VkImage picture_ = VK_NULL_HANDLE;
     VkDeviceMemory pictureMemory_ = VK_NULL_HANDLE;
-    VkBuffer staging_ = VK_NULL_HANDLE;
-    VkDeviceMemory stagingMemory_ = VK_NULL_HANDLE;
-    void* stagingBytes_ = nullptr;
-    bool uploadDue_ = false;
+    VkDescriptorSetLayout displayLayout_ = VK_NULL_HANDLE; // of shaders/display.comp
+    VkPipelineLayout displayPipelineLayout_ = VK_NULL_HANDLE;
+    VkPipeline display_ = VK_NULL_HANDLE;
+    VkDescriptorSet displaySet_ = VK_NULL_HANDLE;
+    Block linear_, screen_; // what it reads and writes
+    VkBufferView linearView_ = VK_NULL_HANDLE;
+    void* linearBytes_ = nullptr;
+    Tone tone_;
+    bool displayDue_ = false;
 };
 
 // Throws Error: what failed, with the code.

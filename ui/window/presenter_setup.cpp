@@ -3,6 +3,7 @@
 #include "ui/window/presenter.h"
 
 #include "engine/base/error.h"
+#include "engine/gpu/shader.h"
 
 #include <algorithm>
 #include <cstring>
@@ -20,6 +21,7 @@ namespace
 {
 
 constexpr uint32_t MIN_IMAGES = 2;
+constexpr VkQueueFlags NEEDED = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
 
 template <class T, class Call>
 std::vector<T> listOf(Call&& call)
@@ -62,6 +64,7 @@ Presenter::Presenter(GLFWwindow* window) : window_(window)
         chooseDevice();
         createDevice();
         createRenderPass();
+        createDisplay();
         startWidgets();
     } catch (...) {
         destroy();
@@ -76,7 +79,7 @@ void Presenter::createInstance()
     if (!extensions) throw Error("No window can be shown: no Vulkan driver of this machine draws into windows.");
     const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                            .pApplicationName = "Trichrome's window",
-                                           .apiVersion = VK_API_VERSION_1_1};
+                                           .apiVersion = VK_API_VERSION_1_2};
     const VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                        .pApplicationInfo = &application,
                                        .enabledExtensionCount = count,
@@ -93,13 +96,14 @@ void Presenter::chooseDevice()
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(device, &properties);
         if (!hasSwapchain(device) || rankOf(properties.deviceType) <= best) continue;
+        if (properties.apiVersion < VK_API_VERSION_1_2) continue; // as shaders are compiled for
         const auto families = listOf<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* list) {
             vkGetPhysicalDeviceQueueFamilyProperties(device, count, list);
         });
         for (uint32_t family = 0; family < families.size(); ++family) {
             VkBool32 presents = VK_FALSE;
             vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface_, &presents);
-            if (!presents || !(families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT)) continue;
+            if (!presents || (families[family].queueFlags & NEEDED) != NEEDED) continue;
             best = rankOf(properties.deviceType);
             physical_ = device;
             family_ = family;
@@ -141,12 +145,14 @@ void Presenter::createDevice()
     checkVulkan(vkCreateFence(device_, &fenceInfo, nullptr, &idle_), "vkCreateFence");
     const VkSemaphoreCreateInfo semaphoreInfo = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     checkVulkan(vkCreateSemaphore(device_, &semaphoreInfo, nullptr, &acquired_), "vkCreateSemaphore");
-    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}; // the font
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}, // the font
+                                          {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+                                          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}};
     const VkDescriptorPoolCreateInfo descriptorInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                                        .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
-                                                       .maxSets = 1,
-                                                       .poolSizeCount = 1,
-                                                       .pPoolSizes = &size};
+                                                       .maxSets = 2,
+                                                       .poolSizeCount = uint32_t(std::size(sizes)),
+                                                       .pPoolSizes = sizes};
     checkVulkan(vkCreateDescriptorPool(device_, &descriptorInfo, nullptr, &descriptorPool_), "vkCreateDescriptorPool");
 }
 
@@ -174,6 +180,48 @@ void Presenter::createRenderPass()
                                          .subpassCount = 1,
                                          .pSubpasses = &subpass};
     checkVulkan(vkCreateRenderPass(device_, &info, nullptr, &renderPass_), "vkCreateRenderPass");
+}
+
+// Tables as texel buffers: the largest pictures fit into those.
+void Presenter::createDisplay()
+{
+    const VkDescriptorSetLayoutBinding bindings[] = {{.binding = 0,
+                                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
+                                                      .descriptorCount = 1,
+                                                      .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT},
+                                                     {.binding = 1,
+                                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                                      .descriptorCount = 1,
+                                                      .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT}};
+    const VkDescriptorSetLayoutCreateInfo layoutInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                        .bindingCount = uint32_t(std::size(bindings)),
+                                                        .pBindings = bindings};
+    checkVulkan(vkCreateDescriptorSetLayout(device_, &layoutInfo, nullptr, &displayLayout_),
+                "vkCreateDescriptorSetLayout");
+    const VkDescriptorSetAllocateInfo setInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                                 .descriptorPool = descriptorPool_,
+                                                 .descriptorSetCount = 1,
+                                                 .pSetLayouts = &displayLayout_};
+    checkVulkan(vkAllocateDescriptorSets(device_, &setInfo, &displaySet_), "vkAllocateDescriptorSets");
+    const VkPipelineLayoutCreateInfo pipelineLayoutInfo = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, .setLayoutCount = 1, .pSetLayouts = &displayLayout_};
+    checkVulkan(vkCreatePipelineLayout(device_, &pipelineLayoutInfo, nullptr, &displayPipelineLayout_),
+                "vkCreatePipelineLayout");
+    const std::vector<uint32_t> words = gpu::loadShader("display", true);
+    const VkShaderModuleCreateInfo moduleInfo = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                                 .codeSize = words.size() * sizeof(uint32_t),
+                                                 .pCode = words.data()};
+    VkShaderModule module = VK_NULL_HANDLE;
+    checkVulkan(vkCreateShaderModule(device_, &moduleInfo, nullptr, &module), "vkCreateShaderModule");
+    const VkComputePipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                              .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                        .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                        .module = module,
+                                                        .pName = "main"},
+                                              .layout = displayPipelineLayout_};
+    const VkResult made = vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &display_);
+    vkDestroyShaderModule(device_, module, nullptr);
+    checkVulkan(made, "vkCreateComputePipelines");
 }
 
 void Presenter::startWidgets()
@@ -215,6 +263,9 @@ void Presenter::destroy()
         if (widgetsStarted_) ImGui_ImplVulkan_Shutdown();
         destroyPicture();
         destroySwapchain();
+        vkDestroyPipeline(device_, display_, nullptr);
+        vkDestroyPipelineLayout(device_, displayPipelineLayout_, nullptr);
+        vkDestroyDescriptorSetLayout(device_, displayLayout_, nullptr);
         vkDestroyRenderPass(device_, renderPass_, nullptr);
         vkDestroyDescriptorPool(device_, descriptorPool_, nullptr);
         vkDestroySemaphore(device_, acquired_, nullptr);

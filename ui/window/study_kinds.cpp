@@ -157,7 +157,7 @@ class FloorStudy : public Study
         const auto emitters = siblingOf(subject, passes::emissionSettings(settings_));
         emitters->renderFrame();
         renderer_ = siblingOf(subject, settings_);
-        meter_.emplace(*renderer_, emitters->readFrame());
+        meter_.emplace(*renderer_, emitters->read(passes::LAST_FRAME));
     }
 
     bool step(Findings& findings) override

@@ -1,15 +1,21 @@
 #pragma once
-// From linear radiance to what a screen shows.
+// What the screen shows, as shaders/display.comp takes it.
 
 #include <cstdint>
 #include <vector>
 
-#include "engine/image/image.h"
+#include <glm/glm.hpp>
+
+#include "shaders/shared/display.h"
 
 namespace ui
 {
 
-enum class ToneCurve : int { Reinhard, Aces, None }; // c/(c+1), as PNG files; a fit of the ACES film curve; cut at 1
+enum class ToneCurve : uint32_t {
+    Reinhard = shared::CURVE_REINHARD,
+    Aces = shared::CURVE_ACES,
+    None = shared::CURVE_NONE
+};
 
 struct Tone {
     float stops = 0; // exposure: times 2^stops
@@ -17,13 +23,15 @@ struct Tone {
     bool operator==(const Tone&) const = default;
 };
 
-// 8-bit sRGB.
+struct ScreenPixel {
+    glm::vec3 color = glm::vec3(0); // linear radiance
+    uint32_t asIs = 0;              // 1: sRGB-encoded, 0 to 1, and not toned
+};
+
 struct ScreenPicture {
     uint32_t width = 0;
     uint32_t height = 0;
-    std::vector<uint8_t> rgba;
+    std::vector<ScreenPixel> pixels;
 };
-
-ScreenPicture toScreen(const image::Image& picture, const Tone& tone);
 
 } // namespace ui

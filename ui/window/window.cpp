@@ -363,11 +363,12 @@ class Window
     // A screen's device can be lost like any other: then once more from the start.
     void show(bool news, const Rectangle& area)
     {
-        const bool stale = news || state_.view != shownView_ || state_.tone != shownTone_ || freshPresenter_;
+        const bool stale = news || state_.view != shownView_ || freshPresenter_;
         try {
             if (stale)
-                if (const ScreenPicture screen = compose(state_.pictures, state_.view, state_.tone); screen.width > 0)
+                if (const ScreenPicture screen = compose(state_.pictures, state_.view); screen.width > 0)
                     presenter_->setPicture(screen);
+            presenter_->setTone(state_.tone);
             presenter_->draw(ImGui::GetDrawData(), area);
             freshPresenter_ = false;
         } catch (const Error& error) {
@@ -380,7 +381,6 @@ class Window
         }
         shown_ = state_.pictures;
         shownView_ = state_.view;
-        shownTone_ = state_.tone;
     }
 
     void report()
@@ -409,7 +409,6 @@ class Window
     Pictures shown_;
     View shownView_;
     std::pair<Pictures, View> legendOf_;
-    Tone shownTone_;
     bool freshPresenter_ = false;
     std::string line_;
     std::shared_ptr<const SceneFacts> facts_;

@@ -35,10 +35,10 @@ class ImageFile : public testing::Test
         std::ofstream(folder / name, std::ios::binary) << bytes;
         return folder / name;
     }
-    static std::string messageOf(const std::filesystem::path& path)
+    static std::string messageOf(const std::filesystem::path& path, const std::string& layer = "")
     {
         try {
-            image::read(path);
+            image::read(path, layer);
         } catch (const Error& error) {
             return error.what();
         }
@@ -78,6 +78,55 @@ TEST_F(ImageFile, ExrKeepsEveryBitAndTheMetadata)
     EXPECT_EQ(std::memcmp(back.image.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(glm::vec3)), 0);
     EXPECT_EQ(back.metadata,
               (image::Metadata{{"camera", ""}, {"max-confidence", "20"}, {"seed", "7"}, {"version", "0.1"}}));
+}
+
+TEST_F(ImageFile, LayersOfAnExrAreReadByName)
+{
+    const image::Image image = sample(37, 300), other = sample(37, 300);
+    image::Image depth = other;
+    for (glm::vec3& pixel : depth.pixels) pixel = 1.0f - pixel;
+    image::write(folder / "plain.exr", image, {{"seed", "7"}});
+    image::write(folder / "a.exr", image, {{"seed", "7"}}, {{"light.direct", "RGB", depth}, {"depth", "Y", depth}});
+    const auto layer = [&](const std::string& name) { return image::read(folder / "a.exr", name).image.pixels; };
+    EXPECT_EQ(layer(""), image.pixels);
+    EXPECT_EQ(layer("light.direct"), depth.pixels);
+    EXPECT_EQ(layer("depth").at(99), glm::vec3(depth.pixels[99].x));
+    EXPECT_EQ(image::read(folder / "a.exr", "depth").metadata, image::read(folder / "plain.exr").metadata);
+    EXPECT_EQ(messageOf(folder / "a.exr", "dept"),
+              "Picture \"" + (folder / "a.exr").string() +
+                  "\", layer \"dept\", has neither the channels R, G, B nor Y alone; its layers are \"depth\", "
+                  "\"light.direct\".");
+    image::write(folder / "a.png", image, {});
+    EXPECT_EQ(messageOf(folder / "a.png", "x\n"),
+              "Picture \"" + (folder / "a.png").string() + "\" is no EXR, so it has no layer \"x?\".");
+}
+
+// Of a stranger's file: the names that there are, as far as a sentence can hold them.
+TEST_F(ImageFile, AnExrOfNamedLayersOnlySaysWhichThereAre)
+{
+    const std::vector<float> samples(4, 0.5f);
+    const auto save = [&](const std::string& prefix, int count) {
+        Imf::Header header(2, 2);
+        Imf::FrameBuffer buffer;
+        for (int i = 0; i < count; ++i)
+            for (const char channel : {'R', 'G', 'B'}) {
+                const std::string name = prefix + std::to_string(i) + "." + channel;
+                header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+                auto* pixels = reinterpret_cast<char*>(const_cast<float*>(samples.data())); // only read
+                buffer.insert(name, Imf::Slice(Imf::FLOAT, pixels, sizeof(float), 2 * sizeof(float)));
+            }
+        Imf::OutputFile file((folder / "named.exr").c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(2);
+    };
+    save("view\n", 2);
+    EXPECT_EQ(messageOf(folder / "named.exr"),
+              "Picture \"" + (folder / "named.exr").string() +
+                  "\" has neither the channels R, G, B nor Y alone; its layers are \"view?0\", \"view?1\".");
+    EXPECT_EQ(image::read(folder / "named.exr", "view\n1").image.pixels.at(3), glm::vec3(0.5f));
+    save("x", 1000);
+    EXPECT_LT(messageOf(folder / "named.exr").size(), 400u);
+    EXPECT_TRUE(messageOf(folder / "named.exr").ends_with("\" and others."));
 }
 
 TEST_F(ImageFile, PngIsReinhardAndSrgbAndReadsBack)

@@ -65,7 +65,7 @@ class Autocovariance : public RendererFixture
         s.maxBounces = 0;
         Renderer dark = renderer(scene, s, 1);
         dark.renderFrame();
-        return dark.readFrame();
+        return dark.read(passes::LAST_FRAME);
     }
 };
 

@@ -91,7 +91,7 @@ TEST_F(RaceTest, MethodsInTurnsGiveThePicturesThatTheyGiveAlone)
         alone.seed = 42;
         passes::Renderer renderer(device(), scene_, alone);
         for (int frame = 0; frame < 5; ++frame) renderer.renderFrame();
-        EXPECT_EQ(renderer.readMean().pixels, repeat.finals[method].pixels) << method;
+        EXPECT_EQ(renderer.read(passes::MEAN).pixels, repeat.finals[method].pixels) << method;
     }
 }
 
@@ -165,7 +165,7 @@ TEST_F(RaceTest, AMovingCameraIsMeasuredAgainstEachFramesOwnView)
     alone.seed = 1;
     resting.apply(alone);
     for (int frame = 0; frame < 4; ++frame) resting.renderFrame();
-    EXPECT_EQ(resting.readFrame().pixels, repeat.finals[0].pixels);
+    EXPECT_EQ(resting.read(passes::LAST_FRAME).pixels, repeat.finals[0].pixels);
     EXPECT_GT(image::measure(against.after(1)->picture, own).relmse, 0.05);
 }
 

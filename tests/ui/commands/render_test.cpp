@@ -56,6 +56,9 @@ TEST_F(Render, RefusesWrongUsageWithExitCode2)
     expectRefusal(small(out, {"--set", "frames=-1"}), 2, "frames");
     expectRefusal(small(out, {"--orbit", "1", "--camera-path", "x.json"}), 2, "--camera-path");
     expectRefusal(small(out, {"--orbit", "1", "--average", "on"}), 2, "--average on cannot be combined with --orbit");
+    expectRefusal(small(out, {"--layers", "mean,depth"}), 2, "depth");
+    expectRefusal(small(directory / "out.png", {"--layers", "mean"}), 2, "--layers needs an EXR");
+    expectRefusal(small(out, {"--orbit", "1", "--layers", "mean"}), 2, "--layers mean cannot be combined");
     EXPECT_TRUE(directory.entries().empty());
 }
 
@@ -194,6 +197,31 @@ TEST_F(Render, AverageOffWritesTheLastFrameOnly)
     runWell(small(one, {"--frames", "1", "--average", "off"}));
     EXPECT_NE(pixels(mean), pixels(last));
     EXPECT_NE(pixels(one), pixels(last));
+}
+
+TEST_F(Render, LayersAreThePicturesThatOtherSettingsWrite)
+{
+    const std::string mean = directory / "mean.exr", last = directory / "last.exr", both = directory / "both.exr";
+    const std::vector<std::string> three = {"--frames", "3", "--method", "restir-pt"};
+    const auto with = [&](std::vector<std::string> words) {
+        words.insert(words.end(), three.begin(), three.end());
+        return words;
+    };
+    runWell(small(mean, three));
+    runWell(small(last, with({"--average", "off"})));
+    runWell(small(both, with({"--layers", "frame,mean"})));
+    EXPECT_EQ(pixels(both), pixels(mean));
+    EXPECT_EQ(image::read(both, "mean").image.pixels, pixels(mean));
+    EXPECT_EQ(image::read(both, "frame").image.pixels, pixels(last));
+    EXPECT_EQ(metadata(both), metadata(mean));
+
+    const std::string json = directory / "c.json";
+    runWell({"compare", last, both + ":frame", both, "--json", json});
+    EXPECT_EQ(readJson(json)[0]["image"], both + ":frame");
+    EXPECT_EQ(readJson(json)[0]["mse"], 0);
+    EXPECT_GT(readJson(json)[1]["mse"], 0);
+    expectRefusal({"compare", both, both + ":alpha"}, 1, "its layers are \"frame\", \"mean\".");
+    expectRefusal({"compare", both + ":frame", both, "--json", both}, 2, "both.exr");
 }
 
 TEST_F(Render, PicturesCarryEverySettingAndWhereTheyComeFrom)

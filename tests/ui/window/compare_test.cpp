@@ -7,6 +7,7 @@
 #include "tests/ui/window/x_client.h"
 
 #include <cstdlib>
+#include <limits>
 
 namespace
 {
@@ -72,6 +73,25 @@ TEST_F(CompareWindow, SplitFlipAndDifferenceShowTwoSettings)
     EXPECT_LT(report()["view"]["wipe"], 0.3);
     ASSERT_TRUE(until(asks("comparing", false), [&] { key("c"); }));
     EXPECT_TRUE(comes([](const Json& json) { return !json.contains("b"); }));
+    EXPECT_EQ(close(), 0);
+}
+
+// Such a file once ended the window.
+TEST_F(CompareWindow, AReferenceThatIsNotFiniteIsShownAndSaid)
+{
+    constexpr float NONE = std::numeric_limits<float>::quiet_NaN(), INFINITE = std::numeric_limits<float>::infinity();
+    image::Image odd{.width = 64, .height = 36, .pixels = std::vector<glm::vec3>(size_t{64} * 36, glm::vec3(NONE))};
+    for (uint32_t y = 0; y < 36; ++y)
+        for (uint32_t x = 32; x < 64; ++x) odd.at(x, y) = {INFINITE, -INFINITE, 0};
+    image::write(folder_ + "/odd.exr", odd, {});
+    view({"--reference", folder_ + "/odd.exr"});
+    ASSERT_TRUE(comes([](const Json& json) { return json["reference"] == "odd.exr" && json["frames"] > 0; }));
+    ASSERT_TRUE(until([](const Json& json) { return json["view"]["flipped"] == true; }, [&] { key("Tab"); }));
+    const auto at = [&](double x) {
+        const auto [column, row] = inPicture(x, 0.25);
+        return screen().at(column, row);
+    };
+    EXPECT_TRUE(becomes([&] { return at(0.2) == glm::u8vec3(255, 0, 255) && at(0.8) == glm::u8vec3(255, 0, 0); }));
     EXPECT_EQ(close(), 0);
 }
 

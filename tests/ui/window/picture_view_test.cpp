@@ -17,13 +17,10 @@ ui::ShotPointer shotOf(uint32_t width, uint32_t height, float gray)
     return shot;
 }
 
-// With no tone curve, 0.25 shows as 137 and 1 as 255 (sRGB).
-int redAt(const ui::ScreenPicture& screen, uint32_t x, uint32_t y)
+float redAt(const ui::ScreenPicture& screen, uint32_t x, uint32_t y)
 {
-    return screen.rgba[size_t{4} * (y * screen.width + x)];
+    return screen.pixels[y * screen.width + x].color.r;
 }
-
-const ui::Tone PLAIN{.stops = 0, .curve = ui::ToneCurve::None};
 
 } // namespace
 
@@ -31,19 +28,19 @@ TEST(PictureView, SplitsFlipsAndSubtracts)
 {
     ui::Pictures pictures{.sides = {shotOf(8, 4, 0.25f), shotOf(4, 2, 1.0f)}}; // B is of a moving camera
     ui::View view{.layout = ui::Layout::Split, .wipe = 0.25f};
-    ui::ScreenPicture screen = compose(pictures, view, PLAIN);
+    ui::ScreenPicture screen = compose(pictures, view);
     ASSERT_EQ(screen.width, 8u);
-    EXPECT_EQ(redAt(screen, 1, 3), 137);
-    EXPECT_EQ(redAt(screen, 2, 3), 255);
+    EXPECT_EQ(redAt(screen, 1, 3), 0.25f);
+    EXPECT_EQ(redAt(screen, 2, 3), 1);
     view.flipped = true;
-    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 0, 0), 255);
+    EXPECT_EQ(redAt(compose(pictures, view), 0, 0), 1);
     view = {.layout = ui::Layout::Difference};
-    EXPECT_NEAR(redAt(compose(pictures, view, PLAIN), 7, 3), 225, 1); // 0.75
+    EXPECT_EQ(redAt(compose(pictures, view), 7, 3), 0.75f);
     view = {.layout = ui::Layout::One};
-    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 7, 3), 137);
+    EXPECT_EQ(redAt(compose(pictures, view), 7, 3), 0.25f);
     view = {.second = ui::Source::Reference, .layout = ui::Layout::Split, .wipe = 0};
-    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 7, 3), 137); // there is no reference
-    EXPECT_EQ(compose({}, view, PLAIN).width, 0u);
+    EXPECT_EQ(redAt(compose(pictures, view), 7, 3), 0.25f); // there is no reference
+    EXPECT_EQ(compose({}, view).width, 0u);
 }
 
 TEST(PictureView, AgreementAndFailedShiftsHaveTheirColors)
@@ -59,14 +56,13 @@ TEST(PictureView, AgreementAndFailedShiftsHaveTheirColors)
     shot->reservoirs[1].lengthAndShifts |= 4u << 24;
     const ui::Pictures pictures{.sides = {shot, nullptr}};
     ui::View view{.falseColor = ui::FalseColor::Agreement};
-    const auto color = [](const ui::ScreenPicture& screen, size_t pixel) {
-        return std::vector<int>{screen.rgba[4 * pixel], screen.rgba[4 * pixel + 1], screen.rgba[4 * pixel + 2]};
-    };
-    EXPECT_EQ(color(compose(pictures, view, PLAIN), 0), (std::vector<int>{255, 255, 255}));
-    EXPECT_EQ(color(compose(pictures, view, PLAIN), 1), (std::vector<int>{255, 255, 0}));
+    const ui::ScreenPicture screen = compose(pictures, view);
+    EXPECT_EQ(screen.pixels[0].color, glm::vec3(1));
+    EXPECT_EQ(screen.pixels[1].color, glm::vec3(1, 1, 0));
+    EXPECT_EQ(screen.pixels[0].asIs, 1u);
     view = {.falseColor = ui::FalseColor::FailedShifts};
-    EXPECT_LT(redAt(compose(pictures, view, PLAIN), 0, 0), 20);
-    EXPECT_GT(redAt(compose(pictures, view, PLAIN), 1, 0), 240);
+    EXPECT_LT(redAt(compose(pictures, view), 0, 0), 0.1f);
+    EXPECT_GT(redAt(compose(pictures, view), 1, 0), 0.9f);
 }
 
 TEST(PictureView, ShiftsByOutcomeAndTheFloorHaveTheirColors)
@@ -77,20 +73,20 @@ TEST(PictureView, ShiftsByOutcomeAndTheFloorHaveTheirColors)
     shot->shifts = {passes::ShiftCounts{4, 0, 0, 0, 0, 0}, passes::ShiftCounts{0, 0, 0, 0, 4, 0}}; // done; hidden
     ui::Pictures pictures{.sides = {shot, nullptr}};
     ui::View view{.falseColor = ui::FalseColor::ShiftOutcomes};
-    const ui::ScreenPicture screen = compose(pictures, view, PLAIN);
+    const ui::ScreenPicture screen = compose(pictures, view);
     const auto words = legendOf(*shot, nullptr, view.falseColor, 0);
     ASSERT_EQ(words.size(), 7u);
     EXPECT_EQ(words[1].text, "done 50.0%");
     EXPECT_EQ(words[5].text, "hidden 50.0%");
     for (const size_t pixel : {size_t{0}, size_t{1}})
-        for (int i = 0; i < 3; ++i)
-            EXPECT_NEAR(screen.rgba[4 * pixel + size_t(i)], 255 * words[pixel == 0 ? 1 : 5].color[i], 1);
+        EXPECT_EQ(screen.pixels[pixel].color, words[pixel == 0 ? 1 : 5].color);
 
     view.falseColor = ui::FalseColor::Floor;
-    EXPECT_EQ(compose(pictures, view, PLAIN).width, 2u); // nothing known yet
+    EXPECT_EQ(compose(pictures, view).width, 2u); // nothing known yet
     ui::Floor floor{.deviation = {.width = 2, .height = 1, .pixels = {glm::vec3(0), glm::vec3(0.25f, 1, 0)}},
                     .frames = 8};
     pictures.floors[ui::A] = std::make_shared<const ui::Floor>(floor);
-    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 0, 0), 0);
-    EXPECT_EQ(redAt(compose(pictures, view, PLAIN), 1, 0), 137);
+    EXPECT_EQ(redAt(compose(pictures, view), 0, 0), 0);
+    EXPECT_EQ(redAt(compose(pictures, view), 1, 0), 0.25f);
+    EXPECT_EQ(compose(pictures, view).pixels[1].asIs, 0u); // toned like the picture
 }

@@ -1,7 +1,7 @@
 // The three toggles, the camera, the screenshot, and what the window draws into being lost.
 // Covers ui/commands/view.cpp, ui/window/camera_hands.cpp, ui/window/frame.cpp, ui/window/mouse.cpp,
 // ui/window/panel.cpp, ui/window/pose.cpp, ui/window/presenter.cpp, ui/window/presenter_setup.cpp,
-// ui/window/screenshot.cpp, ui/window/tone.cpp, ui/window/widgets.cpp, ui/window/window_report.cpp.
+// ui/window/screenshot.cpp, ui/window/widgets.cpp, ui/window/window_report.cpp.
 
 #include "engine/image/image.h"
 #include "tests/support/program.h"
