@@ -2,6 +2,7 @@
 // real scenes.
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -19,12 +20,12 @@ namespace
 class SceneFiles : public RendererFixture
 {
   protected:
-    static void expectFinite(const scene::Scene& scene)
+    void expectFinite(const scene::Scene& scene)
     {
         passes::Settings settings;
         settings.width = 16;
         settings.height = 9;
-        passes::Renderer renderer(device(), scene, settings);
+        passes::Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines_);
         for (int frame = 0; frame < 2; ++frame) renderer.renderFrame();
         const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
         for (const glm::vec3& pixel : picture.pixels) {
@@ -32,6 +33,9 @@ class SceneFiles : public RendererFixture
         }
         for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
     }
+
+    // Of all scenes: many need the same shaders.
+    const std::shared_ptr<passes::PipelinePool> pipelines_ = std::make_shared<passes::PipelinePool>(device());
 };
 
 // What the device would see of a scene: many malformed files differ in nothing that reaches it.
