@@ -23,23 +23,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-// ---- the words of each enumeration, in the order of its values ----
-constexpr std::array<const char*, 4> wordsOf(Method)
-{
-    return {"pt", "restir-pt", "rgb-restir", "grouped-restir"};
-}
-constexpr std::array<const char*, 3> wordsOf(Shift)
-{
-    return {"replay", "reconnection", "hybrid"};
-}
-constexpr std::array<const char*, 2> wordsOf(Color)
-{
-    return {"chosen", "weighted"};
-}
-constexpr std::array<const char*, 2> wordsOf(PixelFilter)
-{
-    return {"center", "box"};
-}
 constexpr std::array<const char*, 2> wordsOf(bool)
 {
     return {"off", "on"};

@@ -3,6 +3,7 @@
 // visit the same list, and what a setting decides and what changing it takes stand there too. Adding a setting: one
 // field, one line in visitSettings.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
@@ -20,6 +21,24 @@ enum class Method : uint32_t { Pt, RestirPt, RgbRestir, GroupedRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
 enum class Color : uint32_t { Chosen, Weighted };
 enum class PixelFilter : uint32_t { Center, Box };
+
+// Their words on the command line, in presets and in the window.
+constexpr std::array<const char*, 4> wordsOf(Method)
+{
+    return {"pt", "restir-pt", "rgb-restir", "grouped-restir"};
+}
+constexpr std::array<const char*, 3> wordsOf(Shift)
+{
+    return {"replay", "reconnection", "hybrid"};
+}
+constexpr std::array<const char*, 2> wordsOf(Color)
+{
+    return {"chosen", "weighted"};
+}
+constexpr std::array<const char*, 2> wordsOf(PixelFilter)
+{
+    return {"center", "box"};
+}
 
 struct Settings {
     Method method = Method::Pt;

@@ -68,14 +68,15 @@ SHARED_CONST uint COUNTER_NONFINITE = 13u; // + stage
 #define DECLARE_STAGE(INDEX, NAME, SHADER) SHARED_CONST uint STAGE_##NAME = INDEX;
 FRAME_STAGES(DECLARE_STAGE)
 #undef DECLARE_STAGE
-SHARED_CONST uint STAGE_COUNT = 7u;
-SHARED_CONST uint COUNTER_COUNT = 20u;
+#define COUNT_STAGE(INDEX, NAME, SHADER) +1u
+SHARED_CONST uint STAGE_COUNT = 0u FRAME_STAGES(COUNT_STAGE);
+#undef COUNT_STAGE
+SHARED_CONST uint COUNTER_COUNT = COUNTER_NONFINITE + STAGE_COUNT;
 
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 304);
 static_assert(shared::COUNTER_SHIFT == shared::RAY_KINDS);
 static_assert(shared::COUNTER_HELD == shared::COUNTER_SHIFT + shared::SHIFT_OUTCOMES);
-static_assert(shared::COUNTER_COUNT == shared::COUNTER_NONFINITE + shared::STAGE_COUNT);
 #endif
 #endif

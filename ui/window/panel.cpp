@@ -6,6 +6,7 @@
 #include "ui/window/pixel_room.h"
 
 #include <filesystem>
+#include <string_view>
 
 namespace ui
 {
@@ -14,6 +15,7 @@ namespace
 {
 
 using namespace colors;
+using namespace std::string_view_literals;
 
 void drawBadge(const ShotPointer& shot)
 {
@@ -179,26 +181,25 @@ void drawPanel(WindowState& state)
 
     // The three that this window is for come first; the rest in the list's own order. Frames and seconds say when
     // `render` stops; here the picture goes on until paused. What B shares with A is in A's list only.
-    const auto first = [](const std::string& name) {
-        return name == "method" || name == "shift" || name == "max-confidence";
+    using passes::Knob, passes::Role;
+    const auto first = [](const Knob& knob) {
+        return knob.name == "method"sv || knob.name == "shift"sv || knob.name == "max-confidence"sv;
     };
-    const auto world = [](const std::string& name) {
-        return name == "size" || name == "camera" || name == "environment" || name == "environment-scale";
+    const auto seldom = [](const Knob& knob) {
+        return knob.role == Role::Sampling || knob.role == Role::Output || knob.role == Role::Scene ||
+               knob.name == "camera"sv;
     };
-    const auto seldom = [&](const std::string& name) {
-        return name == "seed" || name == "average" || (world(name) && name != "size");
-    };
-    const auto shown = [&](const std::string& name) {
-        return !first(name) && name != "frames" && name != "seconds" && !(state.editing == B && world(name));
+    const auto shown = [&](const Knob& knob) {
+        const bool world = knob.role == Role::Scene || knob.role == Role::View;
+        return !first(knob) && knob.role != Role::Stopping && !(state.editing == B && world);
     };
     editSettings(state.places, state.edited(), first);
     ImGui::Separator();
     drawCompareRoom(state);
     ImGui::Separator();
-    editSettings(state.places, state.edited(), [&](const std::string& name) { return shown(name) && !seldom(name); });
+    editSettings(state.places, state.edited(), [&](const Knob& knob) { return shown(knob) && !seldom(knob); });
     if (ImGui::TreeNode("Seed, camera, environment")) {
-        editSettings(state.places, state.edited(),
-                     [&](const std::string& name) { return shown(name) && seldom(name); });
+        editSettings(state.places, state.edited(), [&](const Knob& knob) { return shown(knob) && seldom(knob); });
         ImGui::TreePop();
     }
     ImGui::Separator();

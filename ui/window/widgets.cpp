@@ -1,5 +1,7 @@
 #include "ui/window/widgets.h"
 
+#include "engine/base/check.h"
+
 #include <algorithm>
 #include <cinttypes>
 
@@ -24,7 +26,7 @@ void explain(const char* text)
     ImGui::EndTooltip();
 }
 
-bool choose(Places& places, const std::string& name, int& value, std::initializer_list<const char*> labels,
+bool choose(Places& places, const std::string& name, int& value, const std::vector<const char*>& labels,
             const char* doc)
 {
     const int before = value;
@@ -50,34 +52,30 @@ bool button(Places& places, const char* label, const std::string& name, const ch
 namespace
 {
 
-// Enumerations are told from their words: one button each.
+std::vector<const char*> labelsOf(passes::Method)
+{
+    const std::vector<const char*> labels = {"off (pt)", "luminance", "RGB", "grouped"};
+    CHECK_EQ(labels.size(), wordsOf(passes::Method()).size());
+    return labels;
+}
+template <class T>
+std::vector<const char*> labelsOf(T)
+{
+    const auto words = wordsOf(T());
+    return {words.begin(), words.end()};
+}
+
+// Enumerations have a button for each value.
 template <class T>
 requires std::is_enum_v<T>
-void edit(Places& places, const passes::Knob& knob, T& value, std::initializer_list<const char*> labels)
+void edit(Places& places, const passes::Knob& knob, T& value)
 {
     ImGui::AlignTextToFramePadding();
     ImGui::TextColored(colors::GRAY, "%s", knob.name);
     explain(knob.doc);
     ImGui::SameLine(std::max(4.2f * ImGui::GetFontSize(), ImGui::CalcTextSize(knob.name).x + ImGui::GetFontSize()));
     int index = int(value);
-    if (choose(places, knob.name, index, labels, knob.doc)) value = T(index);
-}
-
-void edit(Places& places, const passes::Knob& knob, passes::Method& value)
-{
-    edit(places, knob, value, {"off (pt)", "luminance", "RGB", "grouped"});
-}
-void edit(Places& places, const passes::Knob& knob, passes::Shift& value)
-{
-    edit(places, knob, value, {"replay", "reconnection", "hybrid"});
-}
-void edit(Places& places, const passes::Knob& knob, passes::Color& value)
-{
-    edit(places, knob, value, {"chosen", "weighted"});
-}
-void edit(Places& places, const passes::Knob& knob, passes::PixelFilter& value)
-{
-    edit(places, knob, value, {"center", "box"});
+    if (choose(places, knob.name, index, labelsOf(value), knob.doc)) value = T(index);
 }
 void edit(Places& places, const passes::Knob& knob, bool& value)
 {
@@ -132,10 +130,10 @@ void edit(Places& places, const passes::Knob& knob, passes::SizeField<uint32_t>&
 
 } // namespace
 
-void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const std::string&)>& wanted)
+void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const passes::Knob&)>& wanted)
 {
     passes::visitSettings(settings, [&]<class T>(const passes::Knob& knob, T&& field) {
-        if (wanted(knob.name)) edit(places, knob, std::forward<T>(field));
+        if (wanted(knob)) edit(places, knob, std::forward<T>(field));
     });
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -27,12 +28,12 @@ void remember(Places& places, const std::string& name); // the last widget
 void explain(const char* text);                         // the last widget, while the mouse is over it
 
 // One of several words; true when it changed.
-bool choose(Places& places, const std::string& name, int& value, std::initializer_list<const char*> labels,
+bool choose(Places& places, const std::string& name, int& value, const std::vector<const char*>& labels,
             const char* doc);
 bool button(Places& places, const char* label, const std::string& name, const char* doc);
 
 // The settings for which `wanted(name)` holds, in the list's order.
-void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const std::string&)>& wanted);
+void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const passes::Knob&)>& wanted);
 
 // Names and values, folded away until opened.
 template <class Value>
