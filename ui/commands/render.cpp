@@ -20,6 +20,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <fmt/format.h>
+
 namespace ui
 {
 
@@ -153,7 +155,10 @@ Action setUpRender(CLI::App& app)
                        meanings + ". compare takes a layer as FILE.exr:NAME.")
         ->option_text("NAME,...")
         ->delimiter(',')
-        ->check(CLI::IsMember(names));
+        ->check([names](const std::string& name) {
+            if (std::ranges::find(names, name) != names.end()) return std::string();
+            return fmt::format("\"{}\" is no layer; there are: {}.", name, fmt::join(names, ", "));
+        });
     app.add_option("--stats", command->stats, "Writes what was done, for programs: times, rays, memory, settings.")
         ->option_text("FILE.json");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
