@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <ranges>
 #include <set>
 #include <string_view>
 
@@ -186,8 +185,9 @@ std::string listOfLayers(const Imf::ChannelList& channels)
     std::set<std::string> names;
     channels.layers(names);
     std::string list;
-    for (const std::string& name : names | std::views::take(MOST))
-        list += (list.empty() ? "; its layers are " : ", ") + fmt::format("\"{}\"", shown(name));
+    size_t count = 0;
+    for (const std::string& name : names)
+        if (count++ < MOST) list += (count == 1 ? "; its layers are " : ", ") + fmt::format("\"{}\"", shown(name));
     return list + (names.size() > MOST ? " and others" : "");
 }
 
