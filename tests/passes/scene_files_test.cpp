@@ -25,6 +25,7 @@ class SceneFiles : public RendererFixture
         passes::Settings settings;
         settings.width = 16;
         settings.height = 9;
+        if (!pipelines_) pipelines_ = std::make_shared<passes::PipelinePool>(device());
         passes::Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines_);
         for (int frame = 0; frame < 2; ++frame) renderer.renderFrame();
         const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
@@ -34,8 +35,7 @@ class SceneFiles : public RendererFixture
         for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
     }
 
-    // Of all scenes: many need the same shaders.
-    const std::shared_ptr<passes::PipelinePool> pipelines_ = std::make_shared<passes::PipelinePool>(device());
+    std::shared_ptr<passes::PipelinePool> pipelines_; // of all scenes: many need the same shaders
 };
 
 // What the device would see of a scene: many malformed files differ in nothing that reaches it.

@@ -38,9 +38,9 @@ ui::Order small()
     return order;
 }
 
-bool comes(const std::function<bool()>& condition)
+bool comes(const std::function<bool()>& condition) // within minutes, for busy machines
 {
-    for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(10ms))
+    for (int i = 0; i < 20000; ++i, std::this_thread::sleep_for(10ms))
         if (condition()) return true;
     return false;
 }
