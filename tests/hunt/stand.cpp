@@ -30,7 +30,7 @@ passes::Settings pathTracing(passes::Settings settings)
 
 } // namespace
 
-Stand::Stand(gpu::Device& device, std::shared_ptr<passes::PipelinePool> pipelines, const Case& c)
+Stand::Stand(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c)
     : case_(c), cameraAt_(passes::cameraOrbit(c.scene.cameras.at(0), c.orbit)),
       trial_(std::make_unique<passes::Renderer>(device, c.scene, c.settings, std::function<void(double)>(),
                                                 scene::FeatureSet::Needed, batchOf(c.settings, PIXELS_AT_ONCE),

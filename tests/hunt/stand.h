@@ -23,7 +23,7 @@ class Stand
 {
   public:
     // The pool outlives stands, so that cases of a session compile once.
-    Stand(gpu::Device& device, std::shared_ptr<passes::PipelinePool> pipelines, const Case& c);
+    Stand(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c);
 
     void runs(uint64_t seed, uint64_t count, const TakeRun& take); // of the method on trial; at least so many
     void frames(uint64_t seed, uint64_t count,

@@ -31,7 +31,7 @@ def main():
     parser.add_argument("build")
     parser.add_argument("--minutes", type=float, default=math.inf)
     parser.add_argument("files", nargs="*")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     commands = json.loads(pathlib.Path(options.build, "compile_commands.json").read_text(encoding="utf-8"))
     files = options.files or sorted({c["file"] for c in commands if c["file"].endswith(".cpp")})
     end = time.monotonic() + 60 * options.minutes

@@ -200,8 +200,10 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
             }
             pictures[size_t(color)] = renderer.read(passes::LAST_FRAME).pixels;
             for (auto& [name, bytes] : renderer.save().buffers) {
-                if (name == "History") histories[size_t(color)] = std::move(bytes);
-                if (name == "HistoryPaths") paths[size_t(color)] = std::move(bytes);
+                if (name == "History")
+                    histories[size_t(color)] = std::move(bytes);
+                else if (name == "HistoryPaths")
+                    paths[size_t(color)] = std::move(bytes);
             }
             for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
         }

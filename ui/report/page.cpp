@@ -60,7 +60,7 @@ std::string fillPage(const std::string& html, const Json& values)
     data all = dataOf(values);
     for (const auto& [name, text] : EMBEDDED_PAGES) all[name] = text;
     kainjow::mustache::mustache page(html);
-    const std::string filled = page.render(all);
+    std::string filled = page.render(all);
     CHECK_EQ(page.error_message(), "");
     return filled;
 }

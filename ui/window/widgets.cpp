@@ -54,7 +54,7 @@ namespace
 
 std::vector<const char*> labelsOf(passes::Method)
 {
-    const std::vector<const char*> labels = {"off (pt)", "luminance", "RGB", "grouped"};
+    std::vector<const char*> labels = {"off (pt)", "luminance", "RGB", "grouped"};
     CHECK_EQ(labels.size(), wordsOf(passes::Method()).size());
     return labels;
 }

@@ -112,7 +112,7 @@ TEST(JpegCodec, DecodesColorsTopRowFirst)
 TEST(JpegCodec, OfInksIsRefusedForWhatItIs)
 {
     try {
-        image::decodeJpeg(jpeg(8, 8, std::vector<uint8_t>(4 * 64, 100), JCS_CMYK), "Image \"it\"");
+        image::decodeJpeg(jpeg(8, 8, std::vector<uint8_t>(size_t{4} * 64, 100), JCS_CMYK), "Image \"it\"");
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()),

@@ -246,7 +246,7 @@ TEST_F(ImageFile, AlphaIsIgnoredAndSaidToBe)
 {
     constexpr int WIDTH = 3, HEIGHT = 600;
     const auto warnings = [&](float lastAlpha) {
-        std::vector<float> color(WIDTH * HEIGHT, 0.25f), alpha(WIDTH * HEIGHT, 1);
+        std::vector<float> color(size_t{WIDTH} * HEIGHT, 0.25f), alpha(size_t{WIDTH} * HEIGHT, 1);
         alpha.back() = lastAlpha;
         Imf::Header header(WIDTH, HEIGHT);
         Imf::FrameBuffer buffer;

@@ -75,7 +75,7 @@ TEST_F(Compare, ValuesBelowZeroCountAndAreSaid)
     for (glm::vec3& pixel : negative.pixels) pixel *= -1;
     const std::string json = directory / "c.json";
     const Outcome outcome =
-        run({"compare", save("black.exr", image::Image{WIDTH, HEIGHT, std::vector<glm::vec3>(WIDTH * HEIGHT)}),
+        run({"compare", save("black.exr", image::Image{WIDTH, HEIGHT, std::vector<glm::vec3>(size_t{WIDTH} * HEIGHT)}),
              save("negative.exr", negative), "--max-flip", "0", "--json", json});
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_NE(outcome.err.find("negative.exr\" has 7200 values below 0"), std::string::npos) << outcome.err;
