@@ -1,6 +1,6 @@
 #pragma once
-// The pictures that frames leave behind: a row each. One more (an albedo, a depth) is a buffer of FrameBuffers, a row
-// here, and a line of the shader that fills it.
+// The pictures of light that frames leave behind: a row each. One more is a buffer of FrameBuffers, a row here, and a
+// line of the shader that fills it; what is no light must also say so, since Renderer::read() undoes the light's scale.
 
 #include "passes/settings.h"
 
