@@ -6,7 +6,8 @@
 namespace scene::gltf
 {
 
-// Afterwards: members have their types, indices are in range, every accessor and buffer view lies inside the declared
+// Afterwards, but for materials, textures and samplers, which readMaterials() checks as far as it reads them: members
+// have their types, indices are in range, every accessor and buffer view lies inside the declared
 // length of its buffer, attributes of a primitive have equal counts and usable types, the nodes form a forest, and
 // every required extension is supported. Throws Error.
 void checkJson(const Json& document);

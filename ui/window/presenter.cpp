@@ -186,9 +186,10 @@ void Presenter::createPicture(uint32_t width, uint32_t height)
     const VkDeviceSize pixels = VkDeviceSize{width} * height;
     VkPhysicalDeviceProperties device;
     vkGetPhysicalDeviceProperties(physical_, &device);
-    if (pixels >= device.limits.maxTexelBufferElements)
-        throw Error("The window's device {} shows less than {} pixels.", deviceName_,
-                    device.limits.maxTexelBufferElements);
+    const VkDeviceSize most = std::min<VkDeviceSize>(device.limits.maxTexelBufferElements - 1,
+                                                     device.limits.maxStorageBufferRange / sizeof(uint32_t));
+    if (pixels > most)
+        throw Error("The window's device {} shows at most {} pixels, not {}x{}.", deviceName_, most, width, height);
     createBlock(linear_, (1 + pixels) * sizeof(ScreenPixel), VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
                 VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
     checkVulkan(vkMapMemory(device_, linear_.memory, 0, VK_WHOLE_SIZE, 0, &linearBytes_), "vkMapMemory");

@@ -183,7 +183,7 @@ TEST_F(IntersectAgreement, WithEmbreeInSponza)
 {
     const std::filesystem::path file =
         std::filesystem::path(TRICHROME_SOURCE_DIR) / "../shared/scenes/sponza/sponza_curtain_spots.gltf";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "NOT TESTED: " << file << " is missing";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "SKIPPED, NOT TESTED: " << file << " is missing";
     const char* size = std::getenv("TRICHROME_TEST_RAYS"); // 512: the million rays of tests/bench/LOG.md
     expectAgreement(scene::loadGltf(file), size ? uint32_t(std::atoi(size)) : 256u);
 }
