@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -104,13 +105,11 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
 
 } // namespace
 
-Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind, const std::string& onlyTruth,
-                 bool onItself)
-    : seed_(seed), index_(index)
+Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), index_(index), wanted_(std::move(wanted))
 {
     Draw draw{seed, index};
-    kind_ = drawKind(draw, onlyKind);
-    truth_ = drawTruth(draw, kind_, onlyTruth);
+    kind_ = drawKind(draw, wanted_.kind);
+    truth_ = drawTruth(draw, kind_, wanted_.truth);
     palette_ = drawPalette(draw, kind_, truth_);
     drawChoices(settings_, draw);
     using enum passes::Method;
@@ -123,9 +122,15 @@ Session::Session(uint64_t seed, uint64_t index, const std::string& onlyKind, con
     settings_.maxBounces = draw.chance(0.03) ? 0 : draw.from(1, shallow ? 3 : draw.chance(0.2) ? 8 : 4);
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
-    if (!onItself) return;
+    insist(settings_);
+    if (!wanted_.onItself) return;
     truth_ = Truth::PathTracer;
     settings_.method = Pt;
+}
+
+void Session::insist(passes::Settings& settings) const
+{
+    for (const auto& [knob, value] : wanted_.settings) passes::set(settings, knob, value);
 }
 
 Case Session::draw(uint64_t place) const
@@ -149,8 +154,10 @@ Case Session::draw(uint64_t place) const
     s.spatial = draw.chance(0.4) ? 0 : draw.chance(0.8) ? draw.from(1, 3) : draw.from(4, 8);
     s.spatialRadius = draw.chance(0.5) ? 0 : float(draw.between(1, 6));
     s.maxConfidence = draw.chance(0.3) ? 20 : uint32_t(std::exp2(draw.between(0, 20.001)));
+    insist(s); // before the choices that depend on it
     s.frames = !s.temporal ? 1 : draw.chance(0.1) ? draw.from(8, 16) : draw.from(2, 5);
     if (s.temporal && draw.chance(0.5)) c.orbit = draw.chance(0.5) ? draw.logBetween(1e-3, 3) : draw.between(-3, 3);
+    insist(s);
     return c;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -43,19 +44,28 @@ struct Case {
     std::string describe() const;
 };
 
+// Which of all cases somebody wants.
+struct Wanted {
+    std::string kind, truth;                                   // by name; empty: any
+    std::vector<std::pair<std::string, std::string>> settings; // knobs and their values, as on the command line
+    bool onItself = false; // the path tracer is compared with itself: whatever is found is a false alarm
+};
+
 // What the cases of a session share: all that is compiled into stages.
 constexpr uint64_t SESSION_CASES = 12;
 class Session
 {
   public:
-    // With `onItself` the path tracer is compared with itself: whatever is found is a false alarm.
-    Session(uint64_t seed, uint64_t index, const std::string& onlyKind = "", const std::string& onlyTruth = "",
-            bool onItself = false);
+    // Throws Error: no such kind, truth, setting or value.
+    Session(uint64_t seed, uint64_t index, Wanted wanted = {});
     Case draw(uint64_t place) const; // one of SESSION_CASES
     Kind kind() const { return kind_; }
 
   private:
+    void insist(passes::Settings& settings) const; // on what is wanted
+
     uint64_t seed_, index_;
+    Wanted wanted_;
     Kind kind_;
     Truth truth_;
     Palette palette_;

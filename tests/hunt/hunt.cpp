@@ -32,9 +32,10 @@ double secondsSince(Clock::time_point start)
 struct Options {
     double minutes = 5, shrinkSeconds = 120;
     uint64_t seed = 1, most = 0; // most finds; 0: no limit
-    std::string only, against, device, plant, out = "build/hunt";
+    std::string device, plant, out = "build/hunt";
+    hunt::Wanted wanted;
     int64_t number = -1;
-    bool onItself = false, verbose = false;
+    bool verbose = false;
 };
 
 // A device and what it has compiled.
@@ -62,7 +63,7 @@ class Hunt
         const bool one = options_.number >= 0;
         const uint64_t first = one ? uint64_t(options_.number) / hunt::SESSION_CASES : 0;
         for (uint64_t index = first; !over(); ++index) {
-            const hunt::Session session(options_.seed, index, options_.only, options_.against, options_.onItself);
+            const hunt::Session session(options_.seed, index, options_.wanted);
             Place place(descriptor(index % VALIDATED == VALIDATED - 1));
             const uint64_t from = one ? uint64_t(options_.number) % hunt::SESSION_CASES : 0;
             for (uint64_t i = from; i < hunt::SESSION_CASES && !over(); ++i) {
@@ -170,22 +171,32 @@ class Hunt
 int main(int argc, char** argv)
 {
     Options options;
+    std::vector<std::string> settings;
     CLI::App app("Random scenes and settings against truth. Ends with 1 when something was found.");
     app.add_option("MINUTES", options.minutes, "How long.");
     app.add_option("--seed", options.seed, "Of all cases.");
-    app.add_option("--only", options.only, fmt::format("One kind of scene: {}.", fmt::join(hunt::KIND_NAMES, ", ")));
-    app.add_option("--against", options.against,
+    app.add_option("--only", options.wanted.kind,
+                   fmt::format("One kind of scene: {}.", fmt::join(hunt::KIND_NAMES, ", ")));
+    app.add_option("--against", options.wanted.truth,
                    "One truth, where a scene has two: pt (for estimators), reference (for pt).");
-    app.add_option("--case", options.number, "One case of that seed (and --only, --against), and no other.");
+    app.add_option("--setting", settings, "Settings that all cases have, as NAME=VALUE: color=weighted.")
+        ->check([](const std::string& text) {
+            return text.find('=') == std::string::npos ? "write it as NAME=VALUE" : std::string();
+        });
+    app.add_option("--case", options.number, "One case of that seed (and --only, --against, --setting), and no other.");
     app.add_option("--plant", options.plant, "An error to plant in the shaders: would it be found?");
     app.add_option("--most", options.most, "Ends after so many finds.");
     app.add_option("--shrink", options.shrinkSeconds, "How long a find may be made smaller, in seconds.");
     app.add_option("--out", options.out, "Where finds are written.");
     app.add_option("--device", options.device, "Index, or part of its name.");
-    app.add_flag("--on-itself", options.onItself,
+    app.add_flag("--on-itself", options.wanted.onItself,
                  "Compares the path tracer with itself: what is found is a false alarm.");
     app.add_flag("--verbose", options.verbose, "Names every case.");
     CLI11_PARSE(app, argc, argv);
+    for (const std::string& text : settings) {
+        const size_t equals = text.find('=');
+        options.wanted.settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
     try {
         return Hunt(options).run() > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
     } catch (const std::exception& error) {

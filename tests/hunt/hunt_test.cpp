@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "engine/base/error.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/scene_tables.h"
 #include "engine/scene/shapes.h"
@@ -175,6 +176,18 @@ TEST(Cases, AreTheSameAgain)
 }
 
 // Scenes of a session need the same features, so that they share compiled stages.
+TEST(Cases, HaveTheSettingsThatAreWanted)
+{
+    const Wanted wanted{.kind = "things", .truth = "pt", .settings = {{"method", "restir-pt"}, {"temporal", "on"}}};
+    for (uint64_t index = 0; index < 20; ++index) {
+        const Case c = Session(5, index, wanted).draw(index % SESSION_CASES);
+        EXPECT_EQ(c.settings.method, passes::Method::RestirPt);
+        EXPECT_TRUE(c.settings.temporal);
+        EXPECT_GT(c.settings.frames, 1u);
+    }
+    EXPECT_THROW(Session(5, 0, {.settings = {{"shape", "round"}}}), Error);
+}
+
 TEST(Cases, OfASessionCompileOnce)
 {
     for (uint64_t index = 0; index < 60; ++index) {
@@ -277,7 +290,7 @@ TEST(CaseFiles, HoldTheCase)
 
 TEST(Shrinking, LeavesWhatFails)
 {
-    const Case c = Session(2, 4, "things").draw(3);
+    const Case c = Session(2, 4, {.kind = "things"}).draw(3);
     ASSERT_GT(c.scene.triangles.size(), 4u);
     const glm::vec3 guilty = c.scene.positions[c.scene.triangles[2].vertices[0]];
     const auto fails = [&](const Case& smaller) {
@@ -322,7 +335,7 @@ class Hunter : public RendererFixture
 TEST_F(Hunter, FindsNothingInAFixedHunt)
 {
     for (uint64_t index = 0; index < 7; ++index) {
-        const Session session(2026, index, KIND_NAMES[index % KINDS]);
+        const Session session(2026, index, {.kind = KIND_NAMES[index % KINDS]});
         const auto pipelines = std::make_shared<passes::PipelinePool>(device());
         for (uint64_t place = 0; place < 2; ++place) {
             const Case c = session.draw(place);
