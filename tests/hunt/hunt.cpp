@@ -30,7 +30,7 @@ double secondsSince(Clock::time_point start)
 }
 
 struct Options {
-    double minutes = 5, shrinkSeconds = 120;
+    double minutes = 5, shrinkSeconds = 120, effort = 1;
     uint64_t seed = 1, most = 0; // most finds; 0: no limit
     std::string device, plant, out = "build/hunt";
     hunt::Wanted wanted;
@@ -101,8 +101,8 @@ class Hunt
 
     void tryCase(Place& place, const Case& c)
     {
-        const Finding finding =
-            hunt::examine(place.device, place.pipelines, c, seedOf(c), {.repeats = c.number % REPEATED == 0});
+        const Finding finding = hunt::examine(place.device, place.pipelines, c, seedOf(c),
+                                              {.factor = options_.effort, .repeats = c.number % REPEATED == 0});
         ++cases_;
         suspicious_ += finding.stages > 1;
         undecided_ += finding.fault == hunt::Fault::Undecided;
@@ -124,7 +124,7 @@ class Hunt
         Place place(descriptor(false));
         uint64_t tries = 0;
         const auto fails = [&](const Case& smaller) {
-            const hunt::Effort effort = {.factor = 2, .stages = 2, .firstLevel = 1e-5};
+            const hunt::Effort effort = {.factor = 2 * options_.effort, .stages = 2, .firstLevel = 1e-5};
             const Finding now = hunt::examine(place.device, place.pipelines, smaller, seedOf(c) + ++tries, effort);
             return now.fault == finding.fault &&
                    std::abs(now.tried - now.truth) >= SAME_GAP * std::abs(finding.tried - finding.truth);
@@ -183,7 +183,10 @@ int main(int argc, char** argv)
         ->check([](const std::string& text) {
             return text.find('=') == std::string::npos ? "write it as NAME=VALUE" : std::string();
         });
-    app.add_option("--case", options.number, "One case of that seed (and --only, --against, --setting), and no other.");
+    app.add_option("--effort", options.effort, "How many times the usual samples: fewer cases, smaller biases.")
+        ->check(CLI::Range(0.1, 1000.0));
+    app.add_option("--case", options.number,
+                   "One case of that seed (and --only, --against, --setting, --effort), and no other.");
     app.add_option("--plant", options.plant, "An error to plant in the shaders: would it be found?");
     app.add_option("--most", options.most, "Ends after so many finds.");
     app.add_option("--shrink", options.shrinkSeconds, "How long a find may be made smaller, in seconds.");
