@@ -15,7 +15,7 @@ namespace hunt
 namespace
 {
 
-constexpr double WEIGHTS[KINDS] = {3, 3, 3, 2, 2, 2, 5};
+constexpr double WEIGHTS[KINDS] = {3, 3, 3, 2, 2, 2, 5, 3};
 
 Kind drawKind(Draw& draw, const std::string& only)
 {
@@ -89,6 +89,12 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
         take(0.3, {Blend, Mask});
         take(0.15, {Unlit});
         if (draw.chance(0.5)) p.addRandomTextures(draw);
+        break;
+    case Kind::Colors:
+        take(0.5, {Glossy, RoughMetal});
+        take(0.3, {Mirror, ThinClear, ThinRough, SolidClear, SolidRough, Blend});
+        p.addRandomTextures(draw);
+        p.baseColorTexture = true;
         break;
     }
     p.sky = draw.chance(kind == Kind::Panes ? 0.7 : kind == Kind::Sealed ? 0.6 : 0.4);

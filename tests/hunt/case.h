@@ -20,9 +20,10 @@ enum class Kind : uint32_t {
     Sealed, // closed bodies seen from inside, lit from outside: black
     Edges,  // pixel centers look exactly at edges, corners and diagonals
     Lights, // emitters, points, spots and suns of extreme sizes and powers
-    Things  // anything
+    Things, // anything
+    Colors  // anything whose color changes from pixel to pixel
 };
-constexpr const char* KIND_NAMES[] = {"panes", "sky", "scales", "sealed", "edges", "lights", "things"};
+constexpr const char* KIND_NAMES[] = {"panes", "sky", "scales", "sealed", "edges", "lights", "things", "colors"};
 constexpr uint32_t KINDS = uint32_t(std::size(KIND_NAMES));
 
 // What the mean of many runs is compared with.

@@ -340,7 +340,8 @@ Scene drawScene(Kind kind, Truth truth, const Palette& palette, Draw& draw)
     case Kind::Sealed: sealed(b); break;
     case Kind::Edges: edges(b); break;
     case Kind::Lights: lights(b); break;
-    case Kind::Things: things(b); break;
+    case Kind::Things:
+    case Kind::Colors: things(b); break;
     }
     return std::move(b.scene);
 }
