@@ -110,7 +110,16 @@ class Hunt
         if (finding.found() || options_.verbose || options_.number >= 0 || finding.fault == hunt::Fault::Undecided)
             say("{:.1f} min, {:.1f} min of processors: {}\n    {}", secondsSince(start_) / 60,
                 double(std::clock()) / CLOCKS_PER_SEC / 60, c.describe(), finding.describe());
-        if (finding.found()) keep(c, finding);
+        if (finding.found())
+            keep(c, finding);
+        else if (options_.number >= 0)
+            hunt::writeCase(stemOf(c), c, finding.describe());
+    }
+
+    // Its files, without their endings.
+    std::string stemOf(const Case& c) const
+    {
+        return fmt::format("{}/{}-{}-{}", options_.out, hunt::KIND_NAMES[size_t(c.kind)], options_.seed, c.number);
     }
 
     // Small, as files.
@@ -130,8 +139,7 @@ class Hunt
                    std::abs(now.tried - now.truth) >= SAME_GAP * std::abs(finding.tried - finding.truth);
         };
         const Case small = hunt::shrink(c, fails, [&] { return secondsSince(start) > options_.shrinkSeconds; });
-        const std::string stem =
-            fmt::format("{}/{}-{}-{}", options_.out, hunt::KIND_NAMES[size_t(c.kind)], options_.seed, c.number);
+        const std::string stem = stemOf(c);
         hunt::writeCase(stem, small, finding.describe());
         const Finding again =
             hunt::examine(place.device, place.pipelines, hunt::readCase(stem + ".json"), seedOf(c) + ++tries);
@@ -185,8 +193,9 @@ int main(int argc, char** argv)
         });
     app.add_option("--effort", options.effort, "How many times the usual samples: fewer cases, smaller biases.")
         ->check(CLI::Range(0.1, 1000.0));
-    app.add_option("--case", options.number,
-                   "One case of that seed (and --only, --against, --setting, --effort), and no other.");
+    app.add_option(
+        "--case", options.number,
+        "One case of that seed (and --only, --against, --setting, --effort), and no other; its files are written.");
     app.add_option("--plant", options.plant, "An error to plant in the shaders: would it be found?");
     app.add_option("--most", options.most, "Ends after so many finds.");
     app.add_option("--shrink", options.shrinkSeconds, "How long a find may be made smaller, in seconds.");
