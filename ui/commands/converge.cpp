@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <ranges>
 
 namespace ui
 {
@@ -55,8 +54,9 @@ struct ConvergeCommand {
 template <class Value>
 std::vector<Value> each(const std::vector<passes::NamedMethod>& methods, Value passes::NamedMethod::*value)
 {
-    const auto values = methods | std::views::transform(value);
-    return {values.begin(), values.end()};
+    std::vector<Value> values;
+    for (const passes::NamedMethod& method : methods) values.push_back(method.*value);
+    return values;
 }
 
 // The path tracer, first in the list when it is not there.
