@@ -44,7 +44,6 @@ void placeCameras(Scene& scene, Warnings& warnings)
 {
     const double radius = boundingRadius(scene);
     for (Camera& camera : scene.cameras) {
-        camera.position -= scene.origin;
         // What lies in front: the point of the view axis nearest to the scene's centre.
         const double ahead = glm::dot(-camera.position, camera.forward);
         camera.target = camera.position + camera.forward * (ahead > 0.01 * radius ? ahead : 0.5 * radius);
@@ -62,14 +61,6 @@ void placeCameras(Scene& scene, Warnings& warnings)
     camera.target = {0, 0, 0};
     scene.cameras.push_back(camera);
     warnings.add("The file has no camera: placed one in front that sees the whole scene.");
-}
-
-void placeLights(Scene& scene, const std::vector<gltf::WorldLight>& lights)
-{
-    for (const auto& [light, position] : lights) {
-        scene.lights.push_back(light);
-        scene.lights.back().position = glm::vec3(position - scene.origin);
-    }
 }
 
 void addSkyWhenDark(Scene& scene, Warnings& warnings)
@@ -100,9 +91,9 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     keepUsedMaterials(scene);
     scene.files = document.files;
     scene.images = gltf::readImages(document, scene.materials, scene.files, report("Decoding images"));
-    scene.cameras = gltf::readCameras(document, tree, warnings);
+    scene.cameras = gltf::readCameras(document, tree, scene.origin, warnings);
     placeCameras(scene, warnings);
-    placeLights(scene, gltf::readLights(document, tree, warnings));
+    scene.lights = gltf::readLights(document, tree, scene.origin, warnings);
     if (options.sky) addSkyWhenDark(scene, warnings);
     if (scene.triangles.empty()) warnings.add("The scene has no triangle.");
     scene.warnings = warnings.sentences();

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_materials.h"
+#include "engine/scene/gltf_values.h"
 
 namespace scene::gltf
 {
@@ -21,12 +22,6 @@ bool isFinite(const glm::dvec3& v)
 glm::dmat3 cofactor(const glm::dmat3& m)
 {
     return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-glm::dvec3 unitOrZero(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
 }
 
 int find(const tinygltf::Primitive& primitive, const std::string& name)

@@ -39,13 +39,6 @@ glm::dmat4 localTransform(const tinygltf::Node& node, size_t index, Warnings& wa
     return matrix;
 }
 
-// The unit vector along `v`, or zero when `v` has no direction.
-glm::dvec3 direction(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
-}
-
 bool isPlaced(const glm::dvec3& position)
 {
     constexpr double FARTHEST = 1e12; // metres; its square is far inside float32
@@ -107,7 +100,8 @@ NodeTree resolveNodes(const Document& document, Warnings& warnings)
     return tree;
 }
 
-std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, Warnings& warnings)
+std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, const glm::dvec3& origin,
+                                Warnings& warnings)
 {
     std::vector<Camera> cameras;
     for (const uint32_t i : tree.visible) {
@@ -126,11 +120,11 @@ std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, 
             camera.aspect = std::max(source.perspective.aspectRatio, 0.0);
         }
         // A camera looks along -z with +y up (glTF 2.0, 3.10.2); scale and mirroring do not reach the picture.
-        camera.position = glm::dvec3(world[3]);
-        camera.forward = direction(-glm::dvec3(world[2]));
-        camera.right = direction(glm::cross(camera.forward, glm::dvec3(world[1])));
+        camera.position = glm::dvec3(world[3]) - origin;
+        camera.forward = unitOrZero(-glm::dvec3(world[2]));
+        camera.right = unitOrZero(glm::cross(camera.forward, glm::dvec3(world[1])));
         camera.up = glm::cross(camera.right, camera.forward);
-        if (camera.right == glm::dvec3(0) || !isPlaced(camera.position)) {
+        if (camera.right == glm::dvec3(0) || !isPlaced(glm::dvec3(world[3]))) {
             warnings.add(fmt::format("Ignored the camera at nodes[{}]: its transform has no direction or place.", i));
             continue;
         }
@@ -139,17 +133,17 @@ std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, 
     return cameras;
 }
 
-std::vector<WorldLight> readLights(const Document& document, const NodeTree& tree, Warnings& warnings)
+std::vector<PunctualLight> readLights(const Document& document, const NodeTree& tree, const glm::dvec3& origin,
+                                      Warnings& warnings)
 {
-    std::vector<WorldLight> lights;
+    std::vector<PunctualLight> lights;
     for (const uint32_t i : tree.visible) {
         const tinygltf::Node& node = document.model.nodes[i];
         const tinygltf::Value* use = findExtension(node.extensions, "KHR_lights_punctual");
         if (!use) continue;
         const tinygltf::Light& source = document.model.lights[static_cast<size_t>(use->Get("light").GetNumberAsInt())];
         const glm::dmat4& world = tree.worldFromNode[i];
-        WorldLight result;
-        PunctualLight& light = result.light;
+        PunctualLight light;
         light.name = shown(source.name.empty() ? node.name : source.name);
         light.kind = source.type == "point"  ? LightKind::Point
                      : source.type == "spot" ? LightKind::Spot
@@ -169,14 +163,14 @@ std::vector<WorldLight> readLights(const Document& document, const NodeTree& tre
             light.outerConeAngle = static_cast<float>(outer);
             light.innerConeAngle = static_cast<float>(inner);
         }
-        const glm::dvec3 along = direction(-glm::dvec3(world[2]));
-        result.position = glm::dvec3(world[3]);
-        if ((light.kind != LightKind::Point && along == glm::dvec3(0)) || !isPlaced(result.position)) {
+        const glm::dvec3 along = unitOrZero(-glm::dvec3(world[2])), position(world[3]);
+        if ((light.kind != LightKind::Point && along == glm::dvec3(0)) || !isPlaced(position)) {
             warnings.add(fmt::format("Ignored the light at nodes[{}]: its transform has no direction or place.", i));
             continue;
         }
         if (light.kind != LightKind::Point) light.direction = glm::vec3(along);
-        lights.push_back(std::move(result));
+        light.position = glm::vec3(position - origin);
+        lights.push_back(std::move(light));
     }
     return lights;
 }

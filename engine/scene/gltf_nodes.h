@@ -18,13 +18,10 @@ struct NodeTree {
 
 NodeTree resolveNodes(const Document& document, Warnings& warnings);
 
-// Positions are those of the world: nothing is relative to Scene::origin yet.
-std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, Warnings& warnings);
-
-struct WorldLight {
-    PunctualLight light; // its position is not set
-    glm::dvec3 position;
-};
-std::vector<WorldLight> readLights(const Document& document, const NodeTree& tree, Warnings& warnings);
+// Relative to `origin`, which is Scene::origin.
+std::vector<Camera> readCameras(const Document& document, const NodeTree& tree, const glm::dvec3& origin,
+                                Warnings& warnings);
+std::vector<PunctualLight> readLights(const Document& document, const NodeTree& tree, const glm::dvec3& origin,
+                                      Warnings& warnings);
 
 } // namespace scene::gltf

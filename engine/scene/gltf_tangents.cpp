@@ -2,6 +2,7 @@
 // angle as in MikkTSpace (Mikkelsen 2008), which glTF names as its reference.
 
 #include "engine/scene/gltf_mesh_part.h"
+#include "engine/scene/gltf_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,12 +33,6 @@ TextureFrame textureFrame(const std::array<glm::dvec3, 3>& positions, const std:
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b)
 {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-glm::dvec3 unitOrZero(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
 }
 
 // In the tangent plane of `normal`.

@@ -1,5 +1,5 @@
 #pragma once
-// Extensions of what tinygltf has read, and ranges of numbers.
+// Extensions of what tinygltf has read, directions, and ranges of numbers.
 
 #include <optional>
 #include <string>
@@ -15,6 +15,8 @@ namespace scene::gltf
 constexpr double MAX_RADIANCE = 1e12;
 
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
+
+glm::dvec3 unitOrZero(const glm::dvec3& v); // zero where it has no direction
 
 // The nearest value in the range, with a warning when that is another: "Clamped the roughness of a material ...".
 double clamped(double value, double minimum, double maximum, const std::string& what, Warnings& warnings);
