@@ -112,6 +112,7 @@ void checkNodes(const Object& document)
         node.object("extensions", [&](const Object& extensions) {
             extensions.object("KHR_lights_punctual",
                               [&](const Object& use) { use.required("light", use.index("light", lights, "lights")); });
+            extensions.object("KHR_node_visibility", [&](const Object& use) { use.boolean("visible"); });
             extensions.object("EXT_mesh_gpu_instancing", [&](const Object& use) { checkInstancing(document, use); });
         });
         node.eachIndex("children", "nodes", [&](uint32_t child) {

@@ -7,12 +7,10 @@
 #include <glm/glm.hpp>
 
 #include "engine/scene/gltf_document.h"
+#include "engine/scene/placing.h"
 
 namespace scene::gltf
 {
-
-// Brighter is refused: products of light, surface and distance must stay far inside float32.
-constexpr double MAX_RADIANCE = 1e12;
 
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
 

@@ -30,6 +30,11 @@ uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
 
 } // namespace
 
+SceneSource sourceOf(const Order& order)
+{
+    return {.name = order.scene, .assetRoot = order.assetRoot, .time = order.time, .animation = order.animation};
+}
+
 passes::Settings settingsOf(const Order& order, Side side)
 {
     const passes::Settings& world = order.settings;

@@ -48,11 +48,12 @@ std::string takeScreenshot(const Shot& shot)
     report.settings.frames = uint32_t(shot.frames);
     report.settings.seconds = 0;
     report.settings.average = !shot.single;
+    report.extra = sourceOf(shot.order).toText();
     std::string camera;
     if (shot.order.pose) {
         camera = name + ".camera.json";
         writeText(camera, jsonText(toCameraPath(*shot.order.pose), 2) + "\n");
-        report.extra = {{"camera-path", camera}};
+        report.extra.emplace_back("camera-path", camera);
     }
     writeText(name + ".json", jsonText(passes::toJson(report.settings), 2) + "\n");
     image::write(name + ".png", shot.picture, metadataOf(report));
@@ -61,6 +62,7 @@ std::string takeScreenshot(const Shot& shot)
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
                                    quoted(shot.order.scene), name, name, quoted(shot.adapter.name));
     if (!shot.order.assetRoot.empty()) line += " --asset-root " + quoted(shot.order.assetRoot);
+    for (const auto& [option, value] : sourceOf(shot.order).toText()) line += " --" + option + " " + quoted(value);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

@@ -34,7 +34,7 @@ bool Studies::wanted(const Order& order, Kind kind)
 
 bool Studies::sameSubject(const Order& a, const Order& b, Kind kind)
 {
-    if (a.pose != b.pose || a.scene != b.scene || a.restarts != b.restarts) return false;
+    if (a.pose != b.pose || sourceOf(a) != sourceOf(b) || a.restarts != b.restarts) return false;
     const Side side = kind == CorrelationB || kind == FloorB ? B : A;
     passes::Settings one = settingsOf(a, side), other = settingsOf(b, side);
     if (kind == Reference) one = passes::referenceSettings(one), other = passes::referenceSettings(other);
