@@ -158,7 +158,7 @@ void placeLights(Scene& scene, const Motion& motion, const State& state, const W
 
 void placeCameras(Scene& scene, const Motion& motion, const State& state, const World& world)
 {
-    constexpr double SMALLEST = 1e-6, LARGEST_FOV = std::numbers::pi - 1e-3;
+    constexpr double SMALLEST = 1e-12, LARGEST_FOV = std::numbers::pi - 1e-3;
     for (const Motion::PlacedCamera& placed : motion.cameras) {
         Camera& camera = scene.cameras[placed.camera];
         camera = placed.rest;

@@ -91,8 +91,7 @@ TEST_F(AnimatedModels, AreWhereTheSpecificationHasThem)
                 // float32 relative to the middle; keys in float32
                 EXPECT_LT(worstDistance(scene, triangles), 2e-6 * sizeOf(rest));
                 for (size_t t = 0; t < rest.size(); ++t)
-                    for (size_t i = 0; i < 3; ++i)
-                        moved = std::max(moved, glm::distance(rest[t][i], triangles[t][i]));
+                    for (size_t i = 0; i < 3; ++i) moved = std::max(moved, glm::distance(rest[t][i], triangles[t][i]));
                 for (const glm::vec3& normal : scene.normals) ASSERT_NEAR(glm::length(normal), 1, 1e-5);
             }
         }
