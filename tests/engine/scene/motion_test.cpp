@@ -311,6 +311,7 @@ TEST(Motion, PartsBehindDroppedTrianglesKeepTheirPlace)
     file.animate({{"node", 1}, {"path", "translation"}}, {0, 1}, {0, 0, 0, 0, 0, 2}, "VEC3");
     const Scene scene = at(file, 1);
     ASSERT_EQ(scene.triangles.size(), 1u);
+    EXPECT_EQ(scene.motion->parts.at(0).firstTriangle, 0u);
     expectNear(corner(scene, 0, 1), {1, 0, 2});
     EXPECT_TRUE(file.warns("Dropped a triangle without area (2 times)."));
 }
