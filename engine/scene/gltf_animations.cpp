@@ -296,7 +296,7 @@ Channel KeyReader::read(const ChannelSource& source)
     }
     const size_t keys = document_.model.accessors[channel.times].count;
     const size_t outputs = document_.model.accessors[channel.values].count;
-    const size_t perKey = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
+    const size_t perKey = size_t{channel.interpolation == Interpolation::CubicSpline ? 3u : 1u} *
                           (channel.property == Property::Weights ? channel.width : 1);
     if (outputs != keys * perKey)
         throw Error("{} has {} outputs for {} keys, but needs {} for each.", source.sampler, outputs, keys, perKey);

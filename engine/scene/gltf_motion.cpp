@@ -206,13 +206,15 @@ void completeMotion(MotionPlan& plan, const Document& document, const std::vecto
         }
         indexOf(paintOf, i, motion.paints, paint);
     }
-    for (const auto& [owner, known] :
-         {std::pair{Owner::Light, &lampOf}, {Owner::Camera, &lensOf}, {Owner::Material, &paintOf}}) {
+    const auto renumberBy = [&](Owner owner, const std::map<uint32_t, uint32_t>& known) {
         renumber(motion, owner, [&](uint32_t object) {
-            const auto found = known->find(object);
-            return found == known->end() ? NONE : found->second;
+            const auto found = known.find(object);
+            return found == known.end() ? NONE : found->second;
         });
-    }
+    };
+    renumberBy(Owner::Light, lampOf);
+    renumberBy(Owner::Camera, lensOf);
+    renumberBy(Owner::Material, paintOf);
     scene.motion = plan.motion;
 }
 

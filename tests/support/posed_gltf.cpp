@@ -48,7 +48,7 @@ glm::dmat4 localOf(const Json& node)
         for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node["matrix"][size_t(i)];
         return m;
     }
-    const auto get = [&](const char* key, std::vector<double> absent) {
+    const auto get = [&](const char* key, const std::vector<double>& absent) {
         return node.contains(key) ? node[key].get<std::vector<double>>() : absent;
     };
     const auto t = get("translation", {0, 0, 0}), s = get("scale", {1, 1, 1});
