@@ -101,11 +101,15 @@ void write(std::vector<T>& array, uint32_t first, const MeshPart& part, bool has
 // Without area, so that nothing meets it.
 void hidePart(Scene& scene, const Motion::Part& part, const Mesh& mesh)
 {
-    for (size_t v = part.firstVertex; v < part.firstVertex + mesh.vertices.count; ++v) {
-        scene.positions[v] = glm::vec3(0);
-        scene.normals[v] = glm::vec3(0, 0, 1);
-        if (!scene.tangents.empty()) scene.tangents[v] = glm::vec4(1, 0, 0, 1);
-    }
+    const auto fill = [&](auto& array, const auto& value) {
+        if (!array.empty()) std::fill_n(array.begin() + part.firstVertex, mesh.vertices.count, value);
+    };
+    fill(scene.positions, glm::vec3(0));
+    fill(scene.normals, glm::vec3(0, 0, 1));
+    fill(scene.tangents, glm::vec4(1, 0, 0, 1));
+    fill(scene.uv0, glm::vec2(0));
+    fill(scene.uv1, glm::vec2(0));
+    fill(scene.colors, glm::vec4(1));
     for (size_t t = part.firstTriangle; t < part.firstTriangle + mesh.triangles.size(); ++t)
         scene.triangles[t].vertices.fill(part.firstVertex);
 }
@@ -151,7 +155,8 @@ void placeLights(Scene& scene, const Motion& motion, const State& state, const W
         shine(light, state.lamps[placed.lamp], clamp);
         if (placed.node == NONE) continue;
         const auto position = placeLight(light, world.worldFromNode[placed.node]);
-        if (position) light.position = glm::vec3(*position - scene.origin);
+        light.position = position ? glm::vec3(*position - scene.origin) : glm::vec3(0);
+        if (!position) light.direction = {0, 0, -1};
         if (!position || !world.visible[placed.node]) light.intensity = {0, 0, 0};
     }
 }

@@ -202,6 +202,25 @@ TEST(Motion, CamerasAndLightsRideOnNodes)
     EXPECT_TRUE(scene.motion->parts.empty());
 }
 
+TEST(Motion, WithoutADirectionLightsAreOutAndCamerasStay)
+{
+    TinyGltf file;
+    file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}, {"intensity", 7}}};
+    file.json["nodes"].push_back({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.json["scenes"][0]["nodes"] = {0, 1};
+    file.animate({{"node", 1}, {"path", "scale"}}, {0, 1}, {1, 1, 1, 0, 0, 0}, "VEC3");
+    Scene scene = file.load();
+    const glm::dvec3 place = scene.cameras[0].position;
+    for (const double t : {1.0, 0.5, 1.0, 0.0}) {
+        pose(scene, FIRST, t);
+        EXPECT_EQ(scene.lights[0].intensity, glm::vec3(t == 1 ? 0 : 7));
+        EXPECT_EQ(scene.lights[0].direction, glm::vec3(0, 0, -1));
+        EXPECT_EQ(scene.cameras[0].position, place);
+        expectNear(scene.cameras[0].forward, {0, 0, -1});
+    }
+}
+
 // KHR_animation_pointer.
 TEST(Motion, PointersMoveLightsCamerasAndMaterials)
 {
