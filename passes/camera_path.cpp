@@ -1,5 +1,6 @@
 #include "passes/camera_path.h"
 
+#include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/json.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -145,6 +147,24 @@ scene::Camera cameraOf(const scene::Camera& base, const Pose& pose, uint64_t fra
 }
 
 } // namespace
+
+uint32_t chooseCamera(const scene::Scene& scene, const std::string& nameOrIndex)
+{
+    CHECK(!scene.cameras.empty());
+    if (nameOrIndex.empty()) return 0;
+    for (uint32_t i = 0; i < scene.cameras.size(); ++i)
+        if (scene.cameras[i].name == nameOrIndex) return i;
+
+    uint32_t index = 0;
+    const char* textEnd = nameOrIndex.data() + nameOrIndex.size();
+    const auto [end, error] = std::from_chars(nameOrIndex.data(), textEnd, index);
+    if (error == std::errc{} && end == textEnd && index < scene.cameras.size()) return index;
+
+    std::string names;
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, scene.cameras[i].name);
+    throw Error("Scene \"{}\" has no camera \"{}\"; it has: {}.", scene.name, nameOrIndex, names);
+}
 
 CameraAt cameraPath(const Json& path, const scene::Camera& base, const glm::dvec3& sceneOrigin)
 {

@@ -1,9 +1,11 @@
 #pragma once
-// Camera motion without a window: along keyframes from a file, or around the point that the camera looks at.
+// The camera that a render starts from, and its motion without a window: along keyframes from a file, or around the
+// point that the camera looks at.
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,6 +13,10 @@
 
 namespace passes
 {
+
+// Which camera `--camera NAME|INDEX` means: the first of that name, else that of that index; empty: the first. Throws
+// Error that lists the cameras.
+uint32_t chooseCamera(const scene::Scene& scene, const std::string& nameOrIndex);
 
 // The camera of a frame, counted from 0.
 using CameraAt = std::function<scene::Camera(uint64_t frame)>;

@@ -26,13 +26,15 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
     return plan;
 }
 
-StageList stagesOf(const SceneOnDevice& scene, const Settings& settings, bool cameraMoves)
+StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves)
 {
-    const FrameState frame{.history = settings.temporal, .sameView = !cameraMoves && scene.viewRepeats(settings)};
-    StageList list;
-    for (const PlannedStage& stage : framePlan(scene, settings, 1))
-        if (stage.runs(frame)) list.emplace_back(stage.shader, stage.variant);
-    return list;
+    StageList stages;
+    for (const Settings& settings : list) {
+        const FrameState frame{.history = settings.temporal, .sameView = !cameraMoves && scene.viewRepeats(settings)};
+        for (const PlannedStage& stage : framePlan(scene, settings, 1))
+            if (stage.runs(frame)) stages.emplace_back(stage.shader, stage.variant);
+    }
+    return stages;
 }
 
 } // namespace passes

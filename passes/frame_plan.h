@@ -1,6 +1,9 @@
 #pragma once
 // What a frame consists of: the stages in their order. The renderer runs the list; who compiles ahead reads it.
 
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/gpu/gpu.h"
@@ -26,8 +29,8 @@ using FramePlan = std::vector<PlannedStage>;
 
 FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32_t runs);
 
-// What frames with these settings compile, for those who compile ahead.
+// What frames with any of these settings compile, for those who compile ahead.
 using StageList = std::vector<std::pair<std::string, Variant>>;
-StageList stagesOf(const SceneOnDevice& scene, const Settings& settings, bool cameraMoves = false);
+StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves = false);
 
 } // namespace passes

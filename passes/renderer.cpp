@@ -1,24 +1,21 @@
 #include "passes/renderer.h"
 
 #include "engine/base/check.h"
-#include "passes/camera_choice.h"
+#include "engine/base/clock.h"
+#include "engine/base/error.h"
+#include "passes/camera_path.h"
 #include "passes/estimator.h"
 #include "shaders/shared/rows.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 
 namespace passes
 {
 
 namespace
 {
-
-double secondsSince(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // SplitMix64's finalizer: every bit of the user's seed reaches every bit of the keys.
 uint64_t mix(uint64_t z)
@@ -45,6 +42,13 @@ float neighborRadius(const Settings& settings)
 }
 
 } // namespace
+
+uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
+{
+    uint64_t sum = 0;
+    for (const auto& [name, count] : counts) sum += count;
+    return sum;
+}
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
                    const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs,
@@ -129,7 +133,7 @@ void Renderer::recompile()
 
 std::unique_ptr<Stage> Renderer::makeStage(const std::string& name, const Variant& variant, const NamedBuffers& more)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const StageContext context{.device = device_,
                                .pipelines = *scene_->pipelines,
                                .scene = *scene_->tables,
@@ -228,7 +232,7 @@ image::Image Renderer::read(const Output& output)
     image::Image picture{.width = settings_.width, .height = pictureHeight()};
     const std::vector<glm::vec4> rows = device_.queue().readAs<glm::vec4>(buffers_[output.buffer]);
     const double frames = output.sums ? double(std::max<uint64_t>(frameCount_, 1)) : 1;
-    const double scale = 1 / (scene_->radianceScale * frames);
+    const double scale = 1 / ((output.light ? scene_->radianceScale : 1) * frames);
     for (size_t i = 0; i < rows.size(); i += output.sums ? shared::FILM_ROWS : shared::COLOR_ROWS) {
         glm::dvec3 value(rows[i]);
         if (output.sums) value -= glm::dvec3(rows[i + 1]);
@@ -280,6 +284,53 @@ RenderStats Renderer::stats()
     const uint64_t held = counter(shared::COUNTER_HELD);
     stats.treesPerPixel = held > 0 ? double(counter(shared::COUNTER_TREES)) / double(held) : 0;
     return stats;
+}
+
+std::vector<const gpu::Buffer*> Renderer::lastingBuffers() const
+{
+    std::vector<const gpu::Buffer*> list = buffers_.lasting();
+    list.insert(list.begin(), &counters_);
+    return list;
+}
+
+RendererState Renderer::save()
+{
+    wait();
+    RendererState state{.frames = frameCount_,
+                        .historyFrames = historyFrames_,
+                        .camera = frame_.camera,
+                        .previousCamera = frame_.previousCamera};
+    for (const gpu::Buffer* buffer : lastingBuffers()) {
+        std::vector<std::byte> bytes = device_.queue().read(*buffer);
+        if (buffer == &buffers_["Surfaces"] && frame_.slice == 1) // the last frame's half goes first
+            std::rotate(bytes.begin(), bytes.begin() + std::ptrdiff_t(bytes.size() / 2), bytes.end());
+        state.buffers.emplace_back(buffer->label(), std::move(bytes));
+    }
+    return state;
+}
+
+void Renderer::restore(const RendererState& state)
+{
+    const std::vector<const gpu::Buffer*> buffers = lastingBuffers();
+    if (state.buffers.size() != buffers.size())
+        throw Error("A state of {} buffers does not fit a renderer that keeps {}.", state.buffers.size(),
+                    buffers.size());
+    for (size_t i = 0; i < buffers.size(); ++i) {
+        const auto& [name, bytes] = state.buffers[i];
+        if (name != buffers[i]->label() || bytes.size() != buffers[i]->size())
+            throw Error("A state with {} bytes of \"{}\" does not fit a renderer with {} bytes of \"{}\".",
+                        bytes.size(), name, buffers[i]->size(), buffers[i]->label());
+    }
+    reset();
+    for (size_t i = 0; i < buffers.size(); ++i) device_.queue().write(*buffers[i], state.buffers[i].second);
+    frameCount_ = state.frames;
+    historyFrames_ = state.historyFrames;
+    frame_.camera = state.camera;
+    frame_.previousCamera = state.previousCamera;
+    frame_.slice = 0; // save() has put the last frame's half of surfaces_ there
+    hitsFrom_.reset();
+    if (frameCount_ > 0 && std::ranges::find(buffers, &buffers_["Surfaces"]) != buffers.end())
+        hitsFrom_ = state.previousCamera;
 }
 
 } // namespace passes

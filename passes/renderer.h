@@ -42,6 +42,9 @@ struct RenderStats {
     std::map<std::string, std::string> variant; // what is compiled in: describe(Variant)
 };
 
+// Of all kinds or stages.
+uint64_t sumOf(const std::map<std::string, uint64_t>& counts);
+
 // All that the next frame needs of those before it.
 struct RendererState {
     uint64_t frames = 0;        // on the film

@@ -1,8 +1,8 @@
 #include "passes/scene_on_device.h"
 
+#include "engine/base/clock.h"
 #include "engine/base/fingerprint.h"
 
-#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -15,11 +15,11 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
     : device(gpu), pipelines(pool ? std::move(pool) : std::make_shared<PipelinePool>(gpu)), camera(first),
       featureSet(set)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const scene::SceneTables made = scene::makeSceneTables(scene, gpu.limits().tableBytes, bvhProgress, set);
     tables = std::make_unique<const scene::GpuScene>(gpu, made);
     bvh = made.bvh.stats;
-    tablesSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - bvh.buildSeconds;
+    tablesSeconds = secondsSince(start) - bvh.buildSeconds;
     lights = made.lights;
     features = made.features;
     lengthScale = made.lengthScale;

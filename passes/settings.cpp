@@ -13,6 +13,7 @@
 #include <optional>
 #include <type_traits>
 
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace passes
@@ -23,29 +24,16 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 2> wordsOf(bool)
-{
-    return {"off", "on"};
-}
-
 template <class T>
 concept Choice = std::is_enum_v<T> || std::same_as<T, bool>;
 template <class T>
 concept Number = std::is_arithmetic_v<T> && !std::same_as<T, bool>;
 
-template <class T>
-std::string joinedWords()
-{
-    std::string joined;
-    for (const char* word : wordsOf(T{})) joined += (joined.empty() ? "" : "|") + std::string(word);
-    return joined;
-}
-
 // ---- value to text ----
 template <Choice T>
 std::string textOf(const T& value)
 {
-    return wordsOf(T{})[static_cast<size_t>(value)];
+    return WORDS_OF<T>[static_cast<size_t>(value)];
 }
 template <Number T>
 std::string textOf(const T& value)
@@ -71,7 +59,7 @@ std::string unitOf(const Knob& knob)
 template <Choice T>
 std::string valuesOf(const Knob&, const T&)
 {
-    return joinedWords<T>();
+    return fmt::format("{}", fmt::join(WORDS_OF<T>, "|"));
 }
 template <Number T>
 std::string valuesOf(const Knob& knob, const T&)
@@ -119,13 +107,9 @@ bool inRange(const Knob& knob, T value)
 template <Choice T>
 void fromText(const Knob& knob, T& field, std::string_view text)
 {
-    const auto words = wordsOf(T{});
-    for (size_t i = 0; i < words.size(); ++i) {
-        if (text != words[i]) continue;
-        field = static_cast<T>(i);
-        return;
-    }
-    throw wrong(knob, field, fmt::format("\"{}\"", text));
+    const auto found = std::ranges::find(WORDS_OF<T>, text);
+    if (found == WORDS_OF<T>.end()) throw wrong(knob, field, fmt::format("\"{}\"", text));
+    field = static_cast<T>(found - WORDS_OF<T>.begin());
 }
 template <Number T>
 void fromText(const Knob& knob, T& field, std::string_view text)
@@ -192,10 +176,10 @@ void fromJson(const Knob& knob, T&& field, const Json& json)
 
 Error unknown(std::string_view name)
 {
-    std::string names;
+    std::vector<const char*> names;
     visitSettings(static_cast<const Settings&>(Settings{}),
-                  [&](const Knob& knob, auto&&) { names += (names.empty() ? "" : ", ") + std::string(knob.name); });
-    return Error("There is no setting \"{}\"; there are: {}.", name, names);
+                  [&](const Knob& knob, auto&&) { names.push_back(knob.name); });
+    return Error("There is no setting \"{}\"; there are: {}.", name, fmt::join(names, ", "));
 }
 
 } // namespace

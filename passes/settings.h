@@ -22,23 +22,26 @@ enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
 enum class Color : uint32_t { Chosen, Weighted };
 enum class PixelFilter : uint32_t { Center, Box };
 
-// Their words on the command line, in presets and in the window.
-constexpr std::array<const char*, 4> wordsOf(Method)
-{
-    return {"pt", "restir-pt", "rgb-restir", "grouped-restir"};
-}
-constexpr std::array<const char*, 3> wordsOf(Shift)
-{
-    return {"replay", "reconnection", "hybrid"};
-}
-constexpr std::array<const char*, 2> wordsOf(Color)
-{
-    return {"chosen", "weighted"};
-}
-constexpr std::array<const char*, 2> wordsOf(PixelFilter)
-{
-    return {"center", "box"};
-}
+// Their words, and those of what is on or off, on the command line and in presets: WORDS_OF<Shift>[size_t(shift)].
+template <class Choice>
+inline constexpr auto WORDS_OF = nullptr;
+template <>
+inline constexpr auto WORDS_OF<bool> = std::array{"off", "on"};
+template <>
+inline constexpr auto WORDS_OF<Method> = std::array{"pt", "restir-pt", "rgb-restir", "grouped-restir"};
+template <>
+inline constexpr auto WORDS_OF<Shift> = std::array{"replay", "reconnection", "hybrid"};
+template <>
+inline constexpr auto WORDS_OF<Color> = std::array{"chosen", "weighted"};
+template <>
+inline constexpr auto WORDS_OF<PixelFilter> = std::array{"center", "box"};
+
+// And on the window's buttons.
+template <class Choice>
+inline constexpr auto LABELS_OF = WORDS_OF<Choice>;
+template <>
+inline constexpr auto LABELS_OF<Method> = std::array{"off (pt)", "luminance", "RGB", "grouped"};
+static_assert(LABELS_OF<Method>.size() == WORDS_OF<Method>.size());
 
 struct Settings {
     Method method = Method::Pt;

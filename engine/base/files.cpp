@@ -134,6 +134,13 @@ void writeAtomically(const std::filesystem::path& path, std::span<const Bytes> p
     if (std::rename(temporary.c_str(), file.c_str()) != 0) throw fail("cannot rename into place");
 }
 
+void createFolder(const std::filesystem::path& path)
+{
+    std::error_code failure;
+    std::filesystem::create_directories(path, failure);
+    if (failure) throw Error("Cannot create the folder \"{}\": {}.", path.string(), failure.message());
+}
+
 std::filesystem::path resolved(const std::filesystem::path& path)
 {
     std::filesystem::path file = path;

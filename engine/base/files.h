@@ -21,6 +21,9 @@ using Bytes = std::span<const std::byte>;
 void writeAtomically(const std::filesystem::path& path, Bytes bytes);
 void writeAtomically(const std::filesystem::path& path, std::span<const Bytes> pieces); // one after the other
 
+// With all that lead to it, unless it is there. Throws Error.
+void createFolder(const std::filesystem::path& path);
+
 // Where a path leads through all symbolic links, whether there is something or not. Throws Error: in a circle.
 std::filesystem::path resolved(const std::filesystem::path& path);
 

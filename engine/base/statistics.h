@@ -1,9 +1,7 @@
 #pragma once
-// The arithmetic of measurements and of statistical tests: moments, tail probabilities, intervals, z, t and chi-squared
-// tests, the jackknife.
+// The arithmetic of measurements: moments, tail probabilities, intervals, t tests.
 
 #include <cstdint>
-#include <functional>
 #include <span>
 
 namespace statistics
@@ -69,22 +67,5 @@ Difference compare(const Estimate& a, const Estimate& b, double relativeRounding
 
 // Two one-sided tests: true when |a - b| < margin is shown at the level (its negation is rejected).
 bool showsEquivalence(const Difference& difference, double margin, double level);
-
-// Pearson's test that `observed` counts come from `expected` ones. Neighboring bins are pooled until each holds at
-// least `minimumExpected`. The totals must agree within rounding: compare equal sample counts.
-struct ChiSquared {
-    double statistic = 0;
-    uint64_t degreesOfFreedom = 0;
-    double p = 1;
-};
-ChiSquared chiSquaredTest(std::span<const double> observed, std::span<const double> expected,
-                          double minimumExpected = 5);
-
-// Leave-one-out: bias-corrected value of a statistic of the samples, and its standard error (Quenouille, Tukey).
-struct Jackknife {
-    double value = 0;
-    double standardError = 0;
-};
-Jackknife jackknife(std::span<const double> samples, const std::function<double(std::span<const double>)>& statistic);
 
 } // namespace statistics

@@ -2,6 +2,7 @@
 
 #include "engine/base/error.h"
 #include "engine/gpu/vulkan.h"
+#include "engine/gpu/vulkan_lists.h"
 
 #include <algorithm>
 #include <charconv>
@@ -66,11 +67,8 @@ bool holdsTexelTables(VkPhysicalDevice device, const VkPhysicalDeviceLimits& lim
 
 std::optional<uint32_t> computeFamily(VkPhysicalDevice device, uint32_t& timestampBits)
 {
-    uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    for (uint32_t i = 0; i < count; ++i) {
+    const auto families = listOf<VkQueueFamilyProperties>(vkGetPhysicalDeviceQueueFamilyProperties, device);
+    for (uint32_t i = 0; i < families.size(); ++i) {
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
         timestampBits = families[i].timestampValidBits;
         return i;

@@ -138,11 +138,6 @@ std::unique_ptr<BufferState> DeviceState::createBuffer(const BufferDescriptor& d
     return state;
 }
 
-BufferState::BufferState(DeviceState& owner) : device(&owner)
-{
-    ++device->liveObjects;
-}
-
 BufferState::~BufferState()
 {
     device->park([vk = device->device, buffer = buffer, memory = memory, view = view] {
@@ -151,7 +146,6 @@ BufferState::~BufferState()
         vkFreeMemory(vk, memory, nullptr);
     });
     device->allocatedBytes -= allocated;
-    --device->liveObjects;
 }
 
 Buffer Device::createBuffer(const BufferDescriptor& descriptor)
@@ -161,18 +155,13 @@ Buffer Device::createBuffer(const BufferDescriptor& descriptor)
     return Buffer(state_->createBuffer(descriptor));
 }
 
-Buffer::Buffer(std::unique_ptr<BufferState> state) : state_(std::move(state)) {}
-Buffer::Buffer() noexcept = default;
-Buffer::Buffer(Buffer&&) noexcept = default;
-Buffer& Buffer::operator=(Buffer&&) noexcept = default;
-Buffer::~Buffer() = default;
 uint64_t Buffer::size() const
 {
-    return state_->size;
+    return state()->size;
 }
 const std::string& Buffer::label() const
 {
-    return state_->label;
+    return state()->label;
 }
 
 } // namespace gpu

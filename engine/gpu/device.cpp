@@ -5,8 +5,8 @@
 #include "engine/base/files.h"
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/gpu/vulkan.h"
+#include "engine/gpu/vulkan_lists.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -22,17 +22,6 @@ namespace
 // Whoever offers it wants it enabled (VUID-VkDeviceCreateInfo-pProperties-04451): a device that lacks some of Vulkan.
 constexpr const char* PORTABILITY_SUBSET = "VK_KHR_portability_subset"; // the header hides its name with beta features
 
-std::vector<const char*> deviceExtensions(VkPhysicalDevice device)
-{
-    uint32_t count = 0;
-    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-    std::vector<VkExtensionProperties> offered(count);
-    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, offered.data());
-    const bool subset = std::ranges::any_of(
-        offered, [](const auto& e) { return std::strcmp(e.extensionName, PORTABILITY_SUBSET) == 0; });
-    return subset ? std::vector{PORTABILITY_SUBSET} : std::vector<const char*>();
-}
-
 VkDevice openDevice(const PhysicalDevice& physical, bool robust)
 {
     VkPhysicalDeviceVulkan12Features features12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -45,13 +34,13 @@ VkDevice openDevice(const PhysicalDevice& physical, bool robust)
                                            .queueFamilyIndex = physical.queueFamily,
                                            .queueCount = 1,
                                            .pQueuePriorities = &priority};
-    const std::vector<const char*> extensions = deviceExtensions(physical.handle);
+    const auto offered = listOf<VkExtensionProperties>(vkEnumerateDeviceExtensionProperties, physical.handle, nullptr);
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = &features,
                                      .queueCreateInfoCount = 1,
                                      .pQueueCreateInfos = &queue,
-                                     .enabledExtensionCount = uint32_t(extensions.size()),
-                                     .ppEnabledExtensionNames = extensions.data()};
+                                     .enabledExtensionCount = holds(offered, PORTABILITY_SUBSET) ? 1u : 0u,
+                                     .ppEnabledExtensionNames = &PORTABILITY_SUBSET};
     VkDevice device = VK_NULL_HANDLE;
     const VkResult result = vkCreateDevice(physical.handle, &info, nullptr, &device);
     if (result == VK_ERROR_INITIALIZATION_FAILED)
@@ -72,6 +61,27 @@ CacheOwner ownerOf(const VkPhysicalDeviceProperties& properties)
 }
 
 } // namespace
+
+template <class State>
+void Destroy::operator()(State* state) const
+{
+    delete state;
+}
+template void Destroy::operator()(BufferState*) const;
+template void Destroy::operator()(PipelineState*) const;
+template void Destroy::operator()(BindGroupState*) const;
+template void Destroy::operator()(EncoderState*) const;
+template void Destroy::operator()(DeviceState*) const;
+
+DeviceObject::DeviceObject(DeviceState& owner) : device(&owner)
+{
+    ++device->liveObjects;
+}
+
+DeviceObject::~DeviceObject()
+{
+    --device->liveObjects;
+}
 
 DeviceState::DeviceState(const DeviceDescriptor& wanted, WithoutDevice) : options(wanted), instance(wanted.validation)
 {
@@ -182,9 +192,7 @@ void DeviceState::savePipelineCache()
             "pipeline cache");
     blob.resize(size);
     if (blob == savedCache) return;
-    std::error_code failure;
-    std::filesystem::create_directories(options.cacheDirectory, failure);
-    if (failure) throw Error("Cannot create the cache folder \"{}\": {}.", options.cacheDirectory, failure.message());
+    files::createFolder(options.cacheDirectory);
     files::writeAtomically(cachePath(), sealCache(ownerOf(properties), blob));
     savedCache = std::move(blob);
 }
@@ -206,13 +214,11 @@ void DeviceState::name(VkObjectType type, uint64_t handle, const std::string& la
 
 Device Device::create(const DeviceDescriptor& descriptor)
 {
-    return Device(std::make_unique<DeviceState>(descriptor));
+    Device device;
+    device.state_.reset(new DeviceState(descriptor));
+    return device;
 }
 
-Device::Device(std::unique_ptr<DeviceState> state) : state_(std::move(state)) {}
-Device::Device(Device&&) noexcept = default;
-Device& Device::operator=(Device&&) noexcept = default;
-Device::~Device() = default;
 const Adapter& Device::adapter() const
 {
     return state_->physical.adapter;

@@ -196,18 +196,9 @@ CommandEncoder Device::createCommandEncoder(const std::string& label)
     return CommandEncoder(std::make_unique<EncoderState>(*state_, label));
 }
 
-CommandEncoder::CommandEncoder(std::unique_ptr<EncoderState> state) : state_(std::move(state)) {}
-CommandEncoder::CommandEncoder(CommandEncoder&&) noexcept = default;
-CommandEncoder& CommandEncoder::operator=(CommandEncoder&&) noexcept = default;
-CommandEncoder::~CommandEncoder() = default;
-std::unique_ptr<EncoderState> CommandEncoder::release()
-{
-    return std::move(state_);
-}
-
 void CommandEncoder::dispatch(const Dispatch& dispatch)
 {
-    state_->dispatch(dispatch);
+    state()->dispatch(dispatch);
 }
 
 void CommandEncoder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t fromOffset, uint64_t toOffset)
@@ -218,13 +209,13 @@ void CommandEncoder::copy(const Buffer& from, const Buffer& to, uint64_t bytes, 
     CHECK_LE(bytes, from.size() - fromOffset);
     CHECK_LE(toOffset, to.size());
     CHECK_LE(bytes, to.size() - toOffset);
-    if (bytes > 0) state_->copy(*from.state(), *to.state(), {fromOffset, toOffset, bytes});
+    if (bytes > 0) state()->copy(*from.state(), *to.state(), {fromOffset, toOffset, bytes});
 }
 
 void CommandEncoder::clear(const Buffer& buffer, uint32_t word)
 {
     CHECK(buffer.state());
-    state_->fill(*buffer.state(), word);
+    state()->fill(*buffer.state(), word);
 }
 
 } // namespace gpu

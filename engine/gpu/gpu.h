@@ -83,6 +83,26 @@ constexpr bool has(Usage set, Usage one)
     return (uint32_t(set) & uint32_t(one)) != 0;
 }
 
+// Ends what lies behind an object, where its type is known.
+struct Destroy {
+    template <class State>
+    void operator()(State* state) const;
+};
+
+// What all objects are: owners of a state, or of none when they are made without one or moved from.
+template <class State>
+class Owner
+{
+  public:
+    Owner() = default;
+    explicit Owner(std::unique_ptr<State> state) : state_(state.release()) {}
+    State* state() const { return state_.get(); }
+    std::unique_ptr<State> release() { return std::unique_ptr<State>(state_.release()); }
+
+  private:
+    std::unique_ptr<State, Destroy> state_;
+};
+
 struct BufferDescriptor {
     std::string label;
     uint64_t size = 0; // bytes; at least 16
@@ -90,20 +110,12 @@ struct BufferDescriptor {
     std::string setting; // the setting to change when it is too large for the device, for the error: "--size"
 };
 
-class Buffer
+class Buffer : public Owner<BufferState>
 {
   public:
-    Buffer() noexcept;
-    explicit Buffer(std::unique_ptr<BufferState> state);
-    Buffer(Buffer&&) noexcept;
-    Buffer& operator=(Buffer&&) noexcept;
-    ~Buffer();
+    using Owner::Owner;
     uint64_t size() const; // bytes
     const std::string& label() const;
-    BufferState* state() const { return state_.get(); }
-
-  private:
-    std::unique_ptr<BufferState> state_;
 };
 
 // A named specialisation constant; bool is 0 or 1, float by bit pattern.
@@ -130,22 +142,16 @@ struct Binding {
     bool operator==(const Binding&) const = default;
 };
 
-class ComputePipeline
+Usage usageFor(Binding::Kind kind); // that a buffer must have been created with
+
+class ComputePipeline : public Owner<PipelineState>
 {
   public:
-    ComputePipeline() noexcept;
-    explicit ComputePipeline(std::unique_ptr<PipelineState> state);
-    ComputePipeline(ComputePipeline&&) noexcept;
-    ComputePipeline& operator=(ComputePipeline&&) noexcept;
-    ~ComputePipeline();
+    using Owner::Owner;
     const std::string& label() const;
     std::span<const Binding> bindings() const;     // of all sets, sorted by (set, binding)
     std::array<uint32_t, 3> workgroupSize() const; // invocations
     double compileSeconds() const;                 // of pipeline creation, seconds
-    PipelineState* state() const { return state_.get(); }
-
-  private:
-    std::unique_ptr<PipelineState> state_;
 };
 
 struct BindGroupDescriptor {
@@ -157,19 +163,7 @@ struct BindGroupDescriptor {
         buffers; // exactly the names that the shader declares in that set
 };
 
-class BindGroup
-{
-  public:
-    BindGroup() noexcept;
-    explicit BindGroup(std::unique_ptr<BindGroupState> state);
-    BindGroup(BindGroup&&) noexcept;
-    BindGroup& operator=(BindGroup&&) noexcept;
-    ~BindGroup();
-    BindGroupState* state() const { return state_.get(); }
-
-  private:
-    std::unique_ptr<BindGroupState> state_;
-};
+using BindGroup = Owner<BindGroupState>;
 
 struct Threads { // {1000} is 1000 x 1 x 1
     uint32_t x = 1;
@@ -188,21 +182,13 @@ struct Dispatch {
 
 // Records work. Barriers are automatic: before a dispatch that touches what an earlier one wrote (or writes what one
 // read).
-class CommandEncoder
+class CommandEncoder : public Owner<EncoderState>
 {
   public:
-    explicit CommandEncoder(std::unique_ptr<EncoderState> state);
-    CommandEncoder(CommandEncoder&&) noexcept;
-    CommandEncoder& operator=(CommandEncoder&&) noexcept;
-    ~CommandEncoder();
+    using Owner::Owner;
     void dispatch(const Dispatch& dispatch);
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes = 0, uint64_t fromOffset = 0, uint64_t toOffset = 0);
     void clear(const Buffer& buffer, uint32_t word = 0); // fills with a 32-bit word
-    EncoderState* state() const { return state_.get(); }
-    std::unique_ptr<EncoderState> release(); // for Queue::submit
-
-  private:
-    std::unique_ptr<EncoderState> state_;
 };
 
 using Submission = uint64_t; // grows by one per submit; 0 is "before the first"
@@ -252,14 +238,11 @@ class Queue
     DeviceState* device_;
 };
 
+// Waits for the queue at its end.
 class Device
 {
   public:
     static Device create(const DeviceDescriptor& descriptor); // throws Error: no driver, no such adapter
-    Device(Device&&) noexcept;
-    Device& operator=(Device&&) noexcept;
-    ~Device(); // waits for the queue
-
     const Adapter& adapter() const;
     const Limits& limits() const;
     Queue& queue();
@@ -277,8 +260,8 @@ class Device
     DeviceState& state() { return *state_; }
 
   private:
-    explicit Device(std::unique_ptr<DeviceState> state);
-    std::unique_ptr<DeviceState> state_;
+    Device() = default;
+    std::unique_ptr<DeviceState, Destroy> state_;
 };
 
 } // namespace gpu

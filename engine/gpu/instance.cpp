@@ -3,9 +3,10 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/gpu/vulkan.h"
+#include "engine/gpu/vulkan_lists.h"
 
 #include <algorithm>
-#include <cstring>
+#include <string_view>
 
 namespace gpu
 {
@@ -15,22 +16,9 @@ namespace
 
 constexpr const char* VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
 
-bool hasInstanceExtension(const char* layer, const char* name)
+bool hasInstanceExtension(const char* name)
 {
-    uint32_t count = 0;
-    vkEnumerateInstanceExtensionProperties(layer, &count, nullptr);
-    std::vector<VkExtensionProperties> extensions(count);
-    vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data());
-    return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
-}
-
-bool hasLayer(const char* name)
-{
-    uint32_t count = 0;
-    vkEnumerateInstanceLayerProperties(&count, nullptr);
-    std::vector<VkLayerProperties> layers(count);
-    vkEnumerateInstanceLayerProperties(&count, layers.data());
-    return std::ranges::any_of(layers, [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+    return holds(listOf<VkExtensionProperties>(vkEnumerateInstanceExtensionProperties, nullptr), name);
 }
 
 VkBool32 onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -56,23 +44,25 @@ void vkCheck(VkResult result, const char* call, const std::string& label)
 
 Instance::Instance(bool validation)
 {
-    std::vector<const char*> layers;
+    std::vector<const char*> wanted;
     std::vector<const char*> extensions;
-    canName_ = hasInstanceExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    canName_ = hasInstanceExtension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (canName_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validation) {
-        if (!hasLayer(VALIDATION_LAYER))
+        const auto layers = listOf<VkLayerProperties>(vkEnumerateInstanceLayerProperties);
+        const auto name = [](const VkLayerProperties& layer) { return std::string_view(layer.layerName); };
+        if (std::ranges::find(layers, VALIDATION_LAYER, name) == layers.end())
             throw Error("Validation was asked for, but the Vulkan layer {} is not installed (Debian package "
                         "vulkan-validationlayers).",
                         VALIDATION_LAYER);
         CHECK(canName_);
-        layers.push_back(VALIDATION_LAYER);
+        wanted.push_back(VALIDATION_LAYER);
         extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
 
     // Drivers that lack some of Vulkan (MoltenVK) are listed only to those who ask; compute needs nothing that they
     // lack.
-    const bool portable = hasInstanceExtension(nullptr, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    const bool portable = hasInstanceExtension(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     if (portable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 
     const VkDebugUtilsMessengerCreateInfoEXT messengerInfo = {
@@ -100,8 +90,8 @@ Instance::Instance(bool validation)
         .pNext = validation ? &features : nullptr,
         .flags = portable ? VkInstanceCreateFlags(VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR) : 0,
         .pApplicationInfo = &application,
-        .enabledLayerCount = uint32_t(layers.size()),
-        .ppEnabledLayerNames = layers.data(),
+        .enabledLayerCount = uint32_t(wanted.size()),
+        .ppEnabledLayerNames = wanted.data(),
         .enabledExtensionCount = uint32_t(extensions.size()),
         .ppEnabledExtensionNames = extensions.data(),
     };

@@ -1,12 +1,12 @@
 // Compute pipelines and bind groups: Vulkan objects from what the shader declares.
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"
 #include "engine/gpu/vulkan.h"
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include <fmt/ranges.h>
@@ -108,27 +108,16 @@ void compile(PipelineState& pipeline, std::span<const uint32_t> spirv, const std
                   .pSpecializationInfo = &specialization},
         .layout = pipeline.layout,
     };
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const VkResult result =
         vkCreateComputePipelines(device.device, device.pipelineCache, 1, &info, nullptr, &pipeline.pipeline);
-    pipeline.compileSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    pipeline.compileSeconds = secondsSince(start);
     vkDestroyShaderModule(device.device, module, nullptr);
     if (result == VK_ERROR_UNKNOWN || result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_INVALID_SHADER_NV)
         throw Error("The driver of \"{}\" cannot compile shader \"{}\" (VkResult {}).", device.physical.adapter.name,
                     pipeline.label, int(result));
     vkCheck(result, "vkCreateComputePipelines", pipeline.label);
     device.name(VK_OBJECT_TYPE_PIPELINE, pipeline.pipeline, pipeline.label);
-}
-
-// The usage that a buffer must have been created with.
-Usage usageFor(Binding::Kind kind)
-{
-    switch (kind) {
-    case Binding::Kind::Storage: return Usage::Storage;
-    case Binding::Kind::Uniform: return Usage::Uniform;
-    case Binding::Kind::Table: return Usage::Table;
-    }
-    CHECK(false);
 }
 
 const char* nameOf(Usage usage)
@@ -157,6 +146,16 @@ void checkNames(const BindGroupDescriptor& descriptor, std::span<const Binding> 
 }
 
 } // namespace
+
+Usage usageFor(Binding::Kind kind)
+{
+    switch (kind) {
+    case Binding::Kind::Storage: return Usage::Storage;
+    case Binding::Kind::Uniform: return Usage::Uniform;
+    case Binding::Kind::Table: return Usage::Table;
+    }
+    CHECK(false);
+}
 
 std::vector<uint32_t> DeviceState::loadShader(const std::string& shader) const
 {
@@ -270,23 +269,12 @@ BindGroup Device::createBindGroup(const BindGroupDescriptor& descriptor)
     return BindGroup(std::move(group));
 }
 
-PipelineState::PipelineState(DeviceState& owner) : device(&owner)
-{
-    ++device->liveObjects;
-}
-
 PipelineState::~PipelineState()
 {
     device->park([vk = device->device, layout = layout, pipeline = pipeline] {
         vkDestroyPipeline(vk, pipeline, nullptr);
         vkDestroyPipelineLayout(vk, layout, nullptr);
     });
-    --device->liveObjects;
-}
-
-BindGroupState::BindGroupState(DeviceState& owner) : device(&owner)
-{
-    ++device->liveObjects;
 }
 
 BindGroupState::~BindGroupState()
@@ -296,35 +284,23 @@ BindGroupState::~BindGroupState()
             vkFreeDescriptorSets(vk, pool, 1, &set); // lavapipe 22.3 keeps the names of sets that go with their pool
         vkDestroyDescriptorPool(vk, pool, nullptr);
     });
-    --device->liveObjects;
 }
 
-ComputePipeline::ComputePipeline(std::unique_ptr<PipelineState> state) : state_(std::move(state)) {}
-ComputePipeline::ComputePipeline() noexcept = default;
-ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
-ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
-ComputePipeline::~ComputePipeline() = default;
 const std::string& ComputePipeline::label() const
 {
-    return state_->label;
+    return state()->label;
 }
 std::span<const Binding> ComputePipeline::bindings() const
 {
-    return state_->bindings;
+    return state()->bindings;
 }
 std::array<uint32_t, 3> ComputePipeline::workgroupSize() const
 {
-    return state_->workgroupSize;
+    return state()->workgroupSize;
 }
 double ComputePipeline::compileSeconds() const
 {
-    return state_->compileSeconds;
+    return state()->compileSeconds;
 }
-
-BindGroup::BindGroup(std::unique_ptr<BindGroupState> state) : state_(std::move(state)) {}
-BindGroup::BindGroup() noexcept = default;
-BindGroup::BindGroup(BindGroup&&) noexcept = default;
-BindGroup& BindGroup::operator=(BindGroup&&) noexcept = default;
-BindGroup::~BindGroup() = default;
 
 } // namespace gpu

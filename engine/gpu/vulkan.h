@@ -27,8 +27,6 @@ class Instance
   public:
     explicit Instance(bool validation); // throws Error: no driver, no validation layer
     ~Instance();                        // unless abandoned
-    Instance(const Instance&) = delete;
-    Instance& operator=(const Instance&) = delete;
 
     VkInstance handle() const { return instance_; }
     void abandon() { instance_ = VK_NULL_HANDLE; } // left to the end of the process
@@ -60,14 +58,21 @@ std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
 // is.
 const PhysicalDevice& choose(std::span<const PhysicalDevice> devices, const std::string& wanted);
 
-struct BufferState {
-    explicit BufferState(DeviceState& owner);
-    ~BufferState(); // parks the Vulkan objects
-    BufferState(const BufferState&) = delete;
-    BufferState& operator=(const BufferState&) = delete;
+// What must go before its device does.
+struct DeviceObject {
+    explicit DeviceObject(DeviceState& owner);
+    ~DeviceObject();
+    DeviceObject(const DeviceObject&) = delete;
+    DeviceObject& operator=(const DeviceObject&) = delete;
 
     DeviceState* device;
     std::string label;
+};
+
+struct BufferState : DeviceObject {
+    using DeviceObject::DeviceObject;
+    ~BufferState(); // parks the Vulkan objects
+
     uint64_t size = 0; // as asked for; Vulkan's is rounded up to 16
     Usage usage = Usage::Storage;
     VkBuffer buffer = VK_NULL_HANDLE;
@@ -77,14 +82,10 @@ struct BufferState {
     std::byte* mapped = nullptr; // if the host sees the memory
 };
 
-struct PipelineState {
-    explicit PipelineState(DeviceState& owner);
+struct PipelineState : DeviceObject {
+    using DeviceObject::DeviceObject;
     ~PipelineState();
-    PipelineState(const PipelineState&) = delete;
-    PipelineState& operator=(const PipelineState&) = delete;
 
-    DeviceState* device;
-    std::string label;
     std::vector<Binding> bindings;
     std::vector<VkDescriptorSetLayout> setLayouts; // owned by the device
     VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -95,14 +96,10 @@ struct PipelineState {
     std::shared_ptr<std::optional<double>> groupMilliseconds = std::make_shared<std::optional<double>>();
 };
 
-struct BindGroupState {
-    explicit BindGroupState(DeviceState& owner);
+struct BindGroupState : DeviceObject {
+    using DeviceObject::DeviceObject;
     ~BindGroupState();
-    BindGroupState(const BindGroupState&) = delete;
-    BindGroupState& operator=(const BindGroupState&) = delete;
 
-    DeviceState* device;
-    std::string label;
     uint32_t set = 0;
     VkDescriptorSetLayout layout = VK_NULL_HANDLE; // owned by the device
     VkDescriptorPool pool = VK_NULL_HANDLE;        // of this one set
@@ -179,8 +176,6 @@ struct StagingRing {
 struct DeviceState {
     DeviceState(const DeviceDescriptor& descriptor);
     ~DeviceState();
-    DeviceState(const DeviceState&) = delete;
-    DeviceState& operator=(const DeviceState&) = delete;
 
     // Destroys now, or when all submitted and all currently recorded work has finished.
     void park(std::function<void()> destroy);

@@ -22,6 +22,9 @@ struct Raster {
     std::vector<Sample> rgba;
 };
 
+// Throws Error: more pixels than we read, or, as the decoder that asks finds, than so many bytes can hold.
+void requirePlausible(const std::string& what, uint64_t width, uint64_t height, bool fits, size_t bytes);
+
 bool isPng(std::span<const std::byte> bytes);
 bool isJpeg(std::span<const std::byte> bytes);
 
@@ -47,8 +50,5 @@ Image decodeHdr(std::span<const std::byte> bytes, const std::string& what);
 // 8-bit RGB, `rgb` holds 3 * width * height samples.
 std::vector<std::byte> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgb,
                                  const Metadata& metadata);
-
-// The PNG that write() makes of a picture: c/(c+1), sRGB.
-std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata);
 
 } // namespace image

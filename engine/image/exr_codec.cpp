@@ -84,23 +84,15 @@ class MemoryOutput : public Imf::OStream
     uint64_t position_ = 0;
 };
 
-// Where channel `c` of the pixel (x, y) of the data window lies, for OpenEXR: rows from `firstRow` on are at `pixels`.
-Imf::Slice sliceOf(glm::vec3* pixels, int c, const Imath::Box2i& window, int firstRow)
+// Where one channel of the pixel (x, y) of the data window lies, for OpenEXR: a value every `stride` bytes from
+// `first`, which is that of the window's leftmost pixel in `firstRow`.
+Imf::Slice sliceOf(const float* first, size_t stride, const Imath::Box2i& window, int firstRow)
 {
     const int64_t width = int64_t{window.max.x} - window.min.x + 1;
     const int64_t origin = firstRow * width + window.min.x;
-    auto* base = reinterpret_cast<char*>(pixels) + static_cast<int64_t>(sizeof(float)) * c -
-                 static_cast<int64_t>(sizeof(glm::vec3)) * origin;
-    return {Imf::FLOAT, base, sizeof(glm::vec3), static_cast<size_t>(width) * sizeof(glm::vec3)};
-}
-
-// The same of channel A, alone in `alphas`.
-Imf::Slice alphaSliceOf(std::vector<float>& alphas, const Imath::Box2i& window, int firstRow)
-{
-    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
-    auto* base = reinterpret_cast<char*>(alphas.data()) -
-                 static_cast<int64_t>(sizeof(float)) * (firstRow * width + window.min.x);
-    return {Imf::FLOAT, base, sizeof(float), static_cast<size_t>(width) * sizeof(float)};
+    auto* values = const_cast<float*>(first); // a slice serves both directions: what is written to a file is only read
+    return {Imf::FLOAT, reinterpret_cast<char*>(values) - static_cast<int64_t>(stride) * origin, stride,
+            static_cast<size_t>(width) * stride};
 }
 
 // Throws where the header claims more than a file of so many bytes can hold. To be asked before OpenEXR takes memory
@@ -145,10 +137,11 @@ Image readPixels(Imf::InputPart& file, const std::string& prefix, bool gray, boo
         glm::vec3* rows = &image.pixels[size_t{width} * static_cast<size_t>(y - window.min.y)];
         Imf::FrameBuffer buffer;
         if (gray)
-            buffer.insert(prefix + "Y", sliceOf(rows, 0, window, y));
+            buffer.insert(prefix + "Y", sliceOf(&rows->x, sizeof(glm::vec3), window, y));
         else
-            for (int c = 0; c < 3; ++c) buffer.insert(prefix + "RGB"[c], sliceOf(rows, c, window, y));
-        if (hasAlpha) buffer.insert(prefix + "A", alphaSliceOf(alphas, window, y));
+            for (int c = 0; c < 3; ++c)
+                buffer.insert(prefix + "RGB"[c], sliceOf(&rows->x + c, sizeof(glm::vec3), window, y));
+        if (hasAlpha) buffer.insert(prefix + "A", sliceOf(alphas.data(), sizeof(float), window, y));
         file.setFrameBuffer(buffer);
         file.readPixels(y, last);
         const auto end = alphas.begin() + (hasAlpha ? ptrdiff_t{width} * (last - y + 1) : 0);
@@ -241,10 +234,10 @@ std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata, s
     Imf::FrameBuffer buffer;
     const auto add = [&](const std::string& prefix, const std::string& letters, const Image& picture) {
         CHECK(picture.width == image.width && picture.height == image.height && letters.size() <= 3);
-        auto* pixels = const_cast<glm::vec3*>(picture.pixels.data()); // only read: Slice serves both directions
         for (size_t c = 0; c < letters.size(); ++c) {
             header.channels().insert(prefix + letters[c], Imf::Channel(Imf::FLOAT));
-            buffer.insert(prefix + letters[c], sliceOf(pixels, int(c), header.dataWindow(), 0));
+            buffer.insert(prefix + letters[c],
+                          sliceOf(&picture.pixels.data()->x + c, sizeof(glm::vec3), header.dataWindow(), 0));
         }
     };
     add("", "RGB", image);

@@ -69,10 +69,8 @@ Image decodeHdr(std::span<const std::byte> bytes, const std::string& what)
     if (!stbi_info_from_callbacks(&CALLBACKS, &header, &width, &height, &channels)) throw malformed();
     if (width <= 0 || height <= 0) throw Error("{} is {} x {} pixels.", what, width, height);
     const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-    if (pixels > MAX_PIXELS)
-        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
-    if (pixels > MAX_PIXELS_PER_BYTE * bytes.size())
-        throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes.size());
+    requirePlausible(what, uint64_t(width), uint64_t(height), pixels <= MAX_PIXELS_PER_BYTE * bytes.size(),
+                     bytes.size());
 
     Stream stream{bytes};
     const std::unique_ptr<float, decltype(&stbi_image_free)> data(

@@ -19,15 +19,10 @@ namespace
 // Tells read() that a PNG is tonemapped by us.
 const Metadata::value_type TONEMAPPED = {"tonemapping", "Reinhard c/(c+1), sRGB"};
 
-// IEC 61966-2-1, both ways.
+// IEC 61966-2-1.
 double encodeSrgb(double linear)
 {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-double decodeSrgb(double encoded)
-{
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 uint8_t tonemap(float value)
@@ -39,7 +34,7 @@ uint8_t tonemap(float value)
 // Full scale stands for all brighter values: it reads as the darkest of them, half a step of 8 bits below.
 double undoReinhard(double encoded)
 {
-    const double mapped = decodeSrgb(std::min(encoded, 254.5 / 255));
+    const double mapped = linearFromSrgb(std::min(encoded, 254.5 / 255));
     return mapped / (1 - mapped);
 }
 
@@ -49,7 +44,7 @@ Image linearFrom(const Raster<Sample>& raster, bool tonemapped)
     std::vector<float> table(size_t{std::numeric_limits<Sample>::max()} + 1);
     for (size_t i = 0; i < table.size(); ++i) {
         const double encoded = static_cast<double>(i) / std::numeric_limits<Sample>::max();
-        table[i] = static_cast<float>(tonemapped ? undoReinhard(encoded) : decodeSrgb(encoded));
+        table[i] = static_cast<float>(tonemapped ? undoReinhard(encoded) : linearFromSrgb(encoded));
     }
     Image image{raster.width, raster.height, {}};
     image.pixels.reserve(raster.rgba.size() / 4);
@@ -67,6 +62,18 @@ bool isTransparent(const Raster<Sample>& raster)
 }
 
 } // namespace
+
+void requirePlausible(const std::string& what, uint64_t width, uint64_t height, bool fits, size_t bytes)
+{
+    if (width * height > MAX_PIXELS)
+        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
+    if (!fits) throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes);
+}
+
+double linearFromSrgb(double encoded)
+{
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
 std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata)
 {

@@ -40,6 +40,8 @@ void write(const std::filesystem::path& path, const Image& image, const Metadata
 // The bytes that write() puts into a PNG file.
 std::vector<std::byte> tonemappedPng(const Image& image, Metadata metadata);
 
+double linearFromSrgb(double encoded); // IEC 61966-2-1, both 0 to 1
+
 // Throws the Error that write() would for this name: to be asked before hours of rendering.
 void requireWritable(const std::filesystem::path& path);
 

@@ -106,10 +106,7 @@ Raster<uint8_t> decodeJpeg(std::span<const std::byte> bytes, const std::string& 
     if (!readHeader(reader, bytes)) throw malformed();
     const uint64_t width = reader.decoder.image_width;
     const uint64_t height = reader.decoder.image_height;
-    if (width * height > MAX_PIXELS)
-        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
-    if (width * height > MAX_PIXELS_PER_BYTE * bytes.size())
-        throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes.size());
+    requirePlausible(what, width, height, width * height <= MAX_PIXELS_PER_BYTE * bytes.size(), bytes.size());
 
     const J_COLOR_SPACE colors = reader.decoder.jpeg_color_space;
     if (colors == JCS_CMYK || colors == JCS_YCCK)

@@ -158,10 +158,9 @@ Raster<Sample> decodePng(std::span<const std::byte> bytes, const std::string& wh
     if (!readHeader(reader)) throw malformed();
     const uint64_t width = png_get_image_width(reader.png, reader.info);
     const uint64_t height = png_get_image_height(reader.png, reader.info);
-    if (width * height > MAX_PIXELS)
-        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
-    if (png_get_rowbytes(reader.png, reader.info) * height > MAX_DEFLATE_RATIO * bytes.size())
-        throw Error("{} claims {} x {} pixels, more than its {} bytes can hold.", what, width, height, bytes.size());
+    requirePlausible(what, width, height,
+                     png_get_rowbytes(reader.png, reader.info) * height <= MAX_DEFLATE_RATIO * bytes.size(),
+                     bytes.size());
     reader.mostBytes += width * 4 * sizeof(uint16_t); // a row, whatever the sample
 
     if (!prepareRows(reader, SIXTEEN_BIT)) throw malformed();

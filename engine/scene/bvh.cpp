@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -17,6 +16,7 @@
 #endif
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/scene/bvh_tree.h"
 #include "shaders/shared/bvh.h"
@@ -204,9 +204,7 @@ uint32_t flatten(const BuildNode& node, const Box& box, BinaryTree& out)
 BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> pairs, bool spatialSplits)
 {
     if (pairs.empty()) return {};
-    BuildContext context;
-    context.input = &input;
-    context.pairs = pairs;
+    BuildContext context{.input = &input, .pairs = pairs};
     std::vector<RTCBuildPrimitive> primitives = primitivesOf(input, pairs);
     Box scene;
     for (const RTCBuildPrimitive& p : primitives)
@@ -286,7 +284,7 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
 {
     CHECK(input.needsAlphaTest.empty() || input.needsAlphaTest.size() == input.triangles.size());
     CHECK_LT(input.triangles.size(), size_t{shared::BVH_ALPHA_FLAG});
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
 
     Bvh bvh;
     const std::vector<uint32_t> usable = usableTriangles(input);
@@ -309,7 +307,7 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     bvh.stats.bytes = (bvh.nodes.size() + bvh.triangles.size()) * sizeof(glm::uvec4);
     bvh.stats.sahCost = sahCost(tree);
     bvh.stats.depth = tree.levels;
-    bvh.stats.buildSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    bvh.stats.buildSeconds = secondsSince(start);
     if (input.progress) input.progress(1.0);
     return bvh;
 }

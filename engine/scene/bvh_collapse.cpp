@@ -131,22 +131,20 @@ class Collapser
         }
     }
 
-    // Which slot each root takes, so that ascending (slot xor signs of the direction) is roughly front to back:
-    // greedily the pair of root and slot's diagonal that agree best (Section 3.2).
-    std::array<uint32_t, BVH_WIDTH> slotsOf(const Roots& roots, glm::vec3 center) const
+    // The root in each slot, NONE in those that are left, so that ascending (slot xor signs of the direction) is
+    // roughly front to back: greedily the pair of root and slot's diagonal that agree best (Section 3.2).
+    std::array<uint32_t, BVH_WIDTH> inSlots(Roots roots, glm::vec3 center) const
     {
         std::array<uint32_t, BVH_WIDTH> slots;
         slots.fill(NONE);
-        uint32_t taken = 0;
-        for (size_t round = 0; round < roots.size(); ++round) {
+        while (!roots.empty()) {
             float best = -std::numeric_limits<float>::infinity();
             size_t bestRoot = 0;
             uint32_t bestSlot = 0;
             for (size_t root = 0; root < roots.size(); ++root) {
-                if (slots[root] != NONE) continue;
                 const glm::vec3 offset = tree_[roots[root]].box.center() - center;
                 for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
-                    if ((taken >> slot & 1u) != 0) continue;
+                    if (slots[slot] != NONE) continue;
                     const float agreement = ((slot & 1u) != 0 ? offset.x : -offset.x) +
                                             ((slot & 2u) != 0 ? offset.y : -offset.y) +
                                             ((slot & 4u) != 0 ? offset.z : -offset.z);
@@ -157,8 +155,8 @@ class Collapser
                     }
                 }
             }
-            slots[bestRoot] = bestSlot;
-            taken |= 1u << bestSlot;
+            slots[bestSlot] = roots[bestRoot];
+            roots.erase(roots.begin() + std::ptrdiff_t(bestRoot));
         }
         return slots;
     }
@@ -175,17 +173,12 @@ class Collapser
     void emitNode(uint32_t node, uint32_t index, uint32_t level, WideTree& wide) const
     {
         wide.levels = std::max(wide.levels, level);
-        const Roots roots = childrenOf(node);
-        const std::array<uint32_t, BVH_WIDTH> slots = slotsOf(roots, tree_[node].box.center());
-        std::array<uint32_t, BVH_WIDTH> rootOfSlot;
-        rootOfSlot.fill(NONE);
-        for (size_t root = 0; root < roots.size(); ++root) rootOfSlot[slots[root]] = roots[root];
-
+        const std::array<uint32_t, BVH_WIDTH> slots = inSlots(childrenOf(node), tree_[node].box.center());
         WideNode result;
         std::vector<uint32_t> inner;
         const uint32_t firstChild = uint32_t(wide.nodes.size());
         for (uint32_t slot = 0; slot < BVH_WIDTH; ++slot) {
-            const uint32_t root = rootOfSlot[slot];
+            const uint32_t root = slots[slot];
             if (root == NONE) continue;
             WideChild& child = result.slots[slot];
             child.box = tree_[root].box;

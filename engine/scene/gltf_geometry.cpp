@@ -1,6 +1,7 @@
 #include "engine/scene/gltf_geometry.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,22 +20,31 @@ namespace
 
 constexpr uint64_t MAX_GEOMETRY_BYTES = uint64_t{1} << 31; // instances multiply what a small file can ask for
 
-const Accessor* instanceAccessor(MeshPartReader& reader, const tinygltf::Node& node, const char* name)
+// Of EXT_mesh_gpu_instancing: translations, rotations and scales, those that there are.
+std::array<const Accessor*, 3> instancingOf(MeshPartReader& reader, const tinygltf::Node& node)
 {
+    std::array<const Accessor*, 3> accessors = {};
     const tinygltf::Value* instancing = findExtension(node.extensions, "EXT_mesh_gpu_instancing");
-    if (!instancing || !instancing->Get("attributes").Has(name)) return nullptr;
-    return &reader.accessor(instancing->Get("attributes").Get(name).GetNumberAsInt());
+    for (size_t i = 0; instancing && i < accessors.size(); ++i) {
+        const std::string name = std::array{"TRANSLATION", "ROTATION", "SCALE"}[i];
+        const tinygltf::Value& attributes = instancing->Get("attributes");
+        if (attributes.Has(name)) accessors[i] = &reader.accessor(attributes.Get(name).GetNumberAsInt());
+    }
+    return accessors;
+}
+
+size_t instanceCount(const std::array<const Accessor*, 3>& instancing)
+{
+    const auto any = std::ranges::find_if(instancing, [](const Accessor* accessor) { return accessor != nullptr; });
+    return any == instancing.end() ? 1 : (*any)->count();
 }
 
 // EXT_mesh_gpu_instancing: translation, rotation and scale of each instance inside the node; else the node itself.
 std::vector<glm::dmat4> instancesOf(MeshPartReader& reader, const tinygltf::Node& node, Warnings& warnings)
 {
-    const Accessor* translations = instanceAccessor(reader, node, "TRANSLATION");
-    const Accessor* rotations = instanceAccessor(reader, node, "ROTATION");
-    const Accessor* scales = instanceAccessor(reader, node, "SCALE");
-    const Accessor* any = translations ? translations : rotations ? rotations : scales;
-    if (!any) return {glm::dmat4(1)};
-    std::vector<glm::dmat4> instances(any->count(), glm::dmat4(1));
+    const auto accessors = instancingOf(reader, node);
+    const auto [translations, rotations, scales] = accessors;
+    std::vector<glm::dmat4> instances(instanceCount(accessors), glm::dmat4(1));
     for (size_t i = 0; i < instances.size(); ++i) {
         if (translations) instances[i] = glm::translate(instances[i], translations->vec3(i));
         if (rotations) {
@@ -49,14 +59,6 @@ std::vector<glm::dmat4> instancesOf(MeshPartReader& reader, const tinygltf::Node
         if (scales) instances[i] = glm::scale(instances[i], scales->vec3(i));
     }
     return instances;
-}
-
-size_t instanceCount(MeshPartReader& reader, const tinygltf::Node& node)
-{
-    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {
-        if (const Accessor* accessor = instanceAccessor(reader, node, name)) return accessor->count();
-    }
-    return 1;
 }
 
 bool isDrawable(const Document& document, const tinygltf::Primitive& primitive)
@@ -95,7 +97,7 @@ void checkSize(const Document& document, const NodeTree& tree, MeshPartReader& r
         const tinygltf::Node& node = document.model.nodes[i];
         if (node.mesh >= 0 && !tree.hidden[i])
             bytes += static_cast<double>(meshBytes[static_cast<size_t>(node.mesh)]) *
-                     static_cast<double>(instanceCount(reader, node));
+                     static_cast<double>(instanceCount(instancingOf(reader, node)));
     }
     if (bytes > static_cast<double>(MAX_GEOMETRY_BYTES))
         throw Error("The meshes with all their instances need {:.0f} bytes, more than the limit of {}.", bytes,

@@ -16,12 +16,6 @@ namespace
 
 constexpr uint64_t MAX_TOTAL_PIXELS = uint64_t{1} << 30; // of all images of a scene
 
-Image readImage(const Document& document, const ImageSource& source)
-{
-    if (source.bufferView >= 0) return decodeTexture(document.view(source.bufferView), source.name);
-    return decodeTexture(readUri(source.uri, document.folders), source.name);
-}
-
 } // namespace
 
 std::vector<Image> readImages(const Document& document, std::vector<Material>& materials,
@@ -47,7 +41,9 @@ std::vector<Image> readImages(const Document& document, std::vector<Material>& m
     const auto work = [&](bool reports) {
         for (size_t i = next++; i < used.size(); i = next++) {
             try {
-                images[i] = readImage(document, document.images[used[i]]);
+                const ImageSource& source = document.images[used[i]];
+                images[i] = source.bufferView >= 0 ? decodeTexture(document.view(source.bufferView), source.name)
+                                                   : decodeTexture(readUri(source.uri, document.folders), source.name);
                 pixels += uint64_t{images[i].width} * images[i].height;
                 if (pixels > MAX_TOTAL_PIXELS)
                     throw Error("The images have more than {} pixels together.", MAX_TOTAL_PIXELS);

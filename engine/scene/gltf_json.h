@@ -63,6 +63,12 @@ class Object
     {
         if (const Json* member = find(key)) visit(Object(this, key, NO_INDEX, *member));
     }
+    // The same of an extension.
+    template <class Visit>
+    void extension(const std::string& name, Visit&& visit) const
+    {
+        object("extensions", [&](const Object& extensions) { extensions.object(name, visit); });
+    }
     template <class Visit>
     void requiredObject(const std::string& key, Visit&& visit) const
     {

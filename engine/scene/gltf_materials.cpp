@@ -1,7 +1,6 @@
 #include "engine/scene/gltf_materials.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/base/error.h"
@@ -29,22 +28,6 @@ class MaterialReader
 
     Material read(const Object& source);
 
-    // What each of them says of a material. An extension is a row and a function.
-    struct Extension {
-        const char* name;
-        void (MaterialReader::*read)(const Object& extension, Material& material);
-    };
-    static const std::array<Extension, 6> EXTENSIONS;
-
-  private:
-    void readEmissiveStrength(const Object& extension, Material& material);
-    void readIor(const Object& extension, Material& material);
-    void readSpecular(const Object& extension, Material& material);
-    void readTransmission(const Object& extension, Material& material);
-    void readUnlit(const Object& extension, Material& material);
-    void readVolume(const Object& extension, Material& material);
-    void readMetallicRoughness(const Object& source, Material& material);
-
     double in(double value, double minimum, double maximum, const char* what)
     {
         return clamped(value, minimum, maximum, fmt::format("the {} of a material", what), warnings_);
@@ -59,20 +42,53 @@ class MaterialReader
         return {in(color.x, 0, maximum, what), in(color.y, 0, maximum, what), in(color.z, 0, maximum, what)};
     }
     TextureUse texture(const Object& owner, const char* key); // none where there is no such member
+    void warn(const std::string& sentence) { warnings_.add(sentence); }
+    double emissiveStrength = 1; // of the material that is being read
+
+  private:
+    void readMetallicRoughness(const Object& source, Material& material);
     void place(TextureUse& use, const Object& transform, size_t index);
 
     Warnings& warnings_;
-    double emissiveStrength_ = 1; // of the material that is being read
 };
 
-const std::array<MaterialReader::Extension, 6> MaterialReader::EXTENSIONS = {{
-    {"KHR_materials_emissive_strength", &MaterialReader::readEmissiveStrength},
-    {"KHR_materials_ior", &MaterialReader::readIor},
-    {"KHR_materials_specular", &MaterialReader::readSpecular},
-    {"KHR_materials_transmission", &MaterialReader::readTransmission},
-    {"KHR_materials_unlit", &MaterialReader::readUnlit},
-    {"KHR_materials_volume", &MaterialReader::readVolume},
-}};
+// What an extension says of a material.
+struct Extension {
+    const char* name;
+    void (*read)(MaterialReader& reader, const Object& extension, Material& material);
+};
+constexpr Extension EXTENSIONS[] = {
+    {"KHR_materials_emissive_strength",
+     [](MaterialReader& reader, const Object& extension, Material&) {
+         reader.emissiveStrength = extension.number("emissiveStrength").value_or(1);
+     }},
+    {"KHR_materials_ior",
+     [](MaterialReader& reader, const Object& extension, Material& material) {
+         // 0 stands for infinity (total reflection); 1000 reflects 0.996.
+         constexpr double LARGEST = 1000;
+         const double value = extension.number("ior").value_or(1.5);
+         material.ior = static_cast<float>(value == 0 ? LARGEST : reader.in(value, 1, LARGEST, "ior"));
+     }},
+    {"KHR_materials_specular",
+     [](MaterialReader& reader, const Object& extension, Material& material) {
+         material.specular = reader.number(extension, "specularFactor", 1, 0, 1, "specular factor");
+         material.specularColor =
+             reader.colorIn(extension.vector<3>("specularColorFactor").value_or(glm::dvec3(1)), 1000, "specular color");
+         material.specularTexture = reader.texture(extension, "specularTexture");
+         material.specularColorTexture = reader.texture(extension, "specularColorTexture");
+     }},
+    {"KHR_materials_transmission",
+     [](MaterialReader& reader, const Object& extension, Material& material) {
+         material.transmission = reader.number(extension, "transmissionFactor", 0, 0, 1, "transmission");
+         material.transmissionTexture = reader.texture(extension, "transmissionTexture");
+     }},
+    {"KHR_materials_unlit", [](MaterialReader&, const Object&, Material& material) { material.unlit = true; }},
+    {"KHR_materials_volume", [](MaterialReader& reader, const Object& extension, Material& material) {
+         material.thin = !(extension.number("thicknessFactor").value_or(0) > 0);
+         const glm::dvec3 color = extension.vector<3>("attenuationColor").value_or(glm::dvec3(1));
+         const bool absorbs = extension.number("attenuationDistance") && color != glm::dvec3(1);
+         if (!material.thin && absorbs) reader.warn("Ignored the attenuation of KHR_materials_volume on a material.");
+     }}};
 
 TextureUse MaterialReader::texture(const Object& owner, const char* key)
 {
@@ -86,11 +102,9 @@ TextureUse MaterialReader::texture(const Object& owner, const char* key)
             warnings_.add(fmt::format("Ignored textures[{}], which has no image that can be read.", index));
             return;
         }
-        info.object("extensions", [&](const Object& extensions) {
-            extensions.object("KHR_texture_transform", [&](const Object& transform) {
-                uvSet = transform.integer("texCoord", 0, 255).value_or(uvSet);
-                place(use, transform, index);
-            });
+        info.extension("KHR_texture_transform", [&](const Object& transform) {
+            uvSet = transform.integer("texCoord", 0, 255).value_or(uvSet);
+            place(use, transform, index);
         });
         if (uvSet > 1) {
             warnings_.add(
@@ -125,47 +139,6 @@ void MaterialReader::place(TextureUse& use, const Object& transform, size_t inde
     }
 }
 
-void MaterialReader::readEmissiveStrength(const Object& extension, Material&)
-{
-    emissiveStrength_ = extension.number("emissiveStrength").value_or(1);
-}
-
-void MaterialReader::readIor(const Object& extension, Material& material)
-{
-    // 0 stands for infinity (total reflection); 1000 reflects 0.996.
-    constexpr double LARGEST = 1000;
-    const double value = extension.number("ior").value_or(1.5);
-    material.ior = static_cast<float>(value == 0 ? LARGEST : in(value, 1, LARGEST, "ior"));
-}
-
-void MaterialReader::readSpecular(const Object& extension, Material& material)
-{
-    material.specular = number(extension, "specularFactor", 1, 0, 1, "specular factor");
-    material.specularColor =
-        colorIn(extension.vector<3>("specularColorFactor").value_or(glm::dvec3(1)), 1000, "specular color");
-    material.specularTexture = texture(extension, "specularTexture");
-    material.specularColorTexture = texture(extension, "specularColorTexture");
-}
-
-void MaterialReader::readTransmission(const Object& extension, Material& material)
-{
-    material.transmission = number(extension, "transmissionFactor", 0, 0, 1, "transmission");
-    material.transmissionTexture = texture(extension, "transmissionTexture");
-}
-
-void MaterialReader::readUnlit(const Object&, Material& material)
-{
-    material.unlit = true;
-}
-
-void MaterialReader::readVolume(const Object& extension, Material& material)
-{
-    material.thin = !(extension.number("thicknessFactor").value_or(0) > 0);
-    const glm::dvec3 color = extension.vector<3>("attenuationColor").value_or(glm::dvec3(1));
-    const bool absorbs = extension.number("attenuationDistance") && color != glm::dvec3(1);
-    if (!material.thin && absorbs) warnings_.add("Ignored the attenuation of KHR_materials_volume on a material.");
-}
-
 void MaterialReader::readMetallicRoughness(const Object& source, Material& material)
 {
     const glm::dvec4 color = source.vector<4>("baseColorFactor").value_or(glm::dvec4(1));
@@ -194,13 +167,11 @@ Material MaterialReader::read(const Object& source)
     material.alphaCutoff = number(source, "alphaCutoff", 0.5, 0, 2, "alpha cutoff"); // above 1: never there
     material.doubleSided = source.boolean("doubleSided").value_or(false);
 
-    emissiveStrength_ = 1;
-    source.object("extensions", [&](const Object& extensions) {
-        for (const Extension& one : EXTENSIONS)
-            extensions.object(one.name, [&](const Object& extension) { (this->*one.read)(extension, material); });
-    });
+    emissiveStrength = 1;
+    for (const Extension& one : EXTENSIONS)
+        source.extension(one.name, [&](const Object& extension) { one.read(*this, extension, material); });
     const glm::dvec3 emissive = source.vector<3>("emissiveFactor").value_or(glm::dvec3(0));
-    material.emission = colorIn(emissive * emissiveStrength_, MAX_RADIANCE, "emission");
+    material.emission = colorIn(emissive * emissiveStrength, MAX_RADIANCE, "emission");
     return material;
 }
 
@@ -218,8 +189,7 @@ std::vector<Material> readMaterials(const Object& document, Warnings& warnings)
 
 bool isMaterialExtension(const std::string& name)
 {
-    return std::ranges::any_of(MaterialReader::EXTENSIONS,
-                               [&](const MaterialReader::Extension& extension) { return extension.name == name; });
+    return std::ranges::find(EXTENSIONS, name, &Extension::name) != std::end(EXTENSIONS);
 }
 
 } // namespace scene::gltf

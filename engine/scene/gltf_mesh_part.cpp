@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_materials.h"
+#include "engine/scene/gltf_values.h"
 
 namespace scene::gltf
 {

@@ -1,6 +1,7 @@
 #include "engine/scene/light_tables.h"
 
 #include "engine/base/check.h"
+#include "engine/image/image.h"
 #include "engine/scene/alias_table.h"
 
 #include <bit>
@@ -31,17 +32,12 @@ glm::uvec4 row(const glm::dvec3& v, double w)
     return std::bit_cast<glm::uvec4>(glm::vec4(float(v.x), float(v.y), float(v.z), float(w)));
 }
 
-double linearFromSrgb(double c)
-{
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 // Mean of the largest channel over the whole image, linear: how much of the emission a texture lets through, roughly.
 double meanOfLargest(const Image& image)
 {
     double sum = 0;
     for (size_t i = 0; i < image.sampleCount(); i += 4)
-        sum += linearFromSrgb(std::max(std::max(image.sample(i), image.sample(i + 1)), image.sample(i + 2)));
+        sum += image::linearFromSrgb(std::max(std::max(image.sample(i), image.sample(i + 1)), image.sample(i + 2)));
     return sum / (double(image.sampleCount()) / 4);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/scene/placing.h"
 
 namespace scene
 {
@@ -15,12 +16,6 @@ namespace
 glm::dmat3 cofactor(const glm::dmat3& m)
 {
     return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-glm::dvec3 unitOrZero(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
 }
 
 // A transform with what follows from it.

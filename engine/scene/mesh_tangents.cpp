@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/placing.h"
+
 namespace scene
 {
 
@@ -32,12 +34,6 @@ TextureFrame textureFrame(const std::array<glm::dvec3, 3>& positions, const std:
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b)
 {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-glm::dvec3 unitOrZero(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
 }
 
 // In the tangent plane of `normal`.

@@ -12,13 +12,6 @@ namespace scene
 namespace
 {
 
-// The unit vector along `v`, or zero when `v` has no direction.
-glm::dvec3 direction(const glm::dvec3& v)
-{
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
-}
-
 bool isPlaced(const glm::dvec3& position)
 {
     constexpr double FARTHEST = 1e12; // metres; its square is far inside float32
@@ -26,6 +19,12 @@ bool isPlaced(const glm::dvec3& position)
 }
 
 } // namespace
+
+glm::dvec3 unitOrZero(const glm::dvec3& v)
+{
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0);
+}
 
 glm::dmat4 Transform::toMatrix() const
 {
@@ -35,8 +34,8 @@ glm::dmat4 Transform::toMatrix() const
 
 bool placeCamera(Camera& camera, const glm::dmat4& worldFromNode)
 {
-    const glm::dvec3 forward = direction(-glm::dvec3(worldFromNode[2]));
-    const glm::dvec3 right = direction(glm::cross(forward, glm::dvec3(worldFromNode[1])));
+    const glm::dvec3 forward = unitOrZero(-glm::dvec3(worldFromNode[2]));
+    const glm::dvec3 right = unitOrZero(glm::cross(forward, glm::dvec3(worldFromNode[1])));
     if (right == glm::dvec3(0) || !isPlaced(glm::dvec3(worldFromNode[3]))) return false;
     camera.position = glm::dvec3(worldFromNode[3]);
     camera.forward = forward;
@@ -53,7 +52,7 @@ void aim(Camera& camera, double radius)
 
 std::optional<glm::dvec3> placeLight(PunctualLight& light, const glm::dmat4& worldFromNode)
 {
-    const glm::dvec3 along = direction(-glm::dvec3(worldFromNode[2])), position(worldFromNode[3]);
+    const glm::dvec3 along = unitOrZero(-glm::dvec3(worldFromNode[2])), position(worldFromNode[3]);
     if ((light.kind != LightKind::Point && along == glm::dvec3(0)) || !isPlaced(position)) return std::nullopt;
     if (light.kind != LightKind::Point) light.direction = glm::vec3(along);
     return position;

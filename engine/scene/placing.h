@@ -13,6 +13,8 @@
 namespace scene
 {
 
+glm::dvec3 unitOrZero(const glm::dvec3& v); // zero where it has no direction
+
 // Brighter is refused: products of light, surface and distance must stay far inside float32.
 constexpr double MAX_RADIANCE = 1e12;
 

@@ -4,6 +4,7 @@
 #include "passes/estimator.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace passes
@@ -15,11 +16,6 @@ namespace
 std::span<const float> channels(const std::vector<glm::vec3>& pixels)
 {
     return {&pixels.front().x, 3 * pixels.size()};
-}
-
-bool isPowerOfTwo(uint32_t n)
-{
-    return (n & (n - 1)) == 0;
 }
 
 // By run, the pixels of `list` (pairs) from pictures of all runs.
@@ -73,8 +69,8 @@ void Chain::step()
     ++frame_;
     if (cameraAt_) renderer_.setCamera(cameraAt_(frame_ - 1));
     renderer_.renderFrame();
-    if (isPowerOfTwo(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
-    if (frame_ == 1 || !isPowerOfTwo(frame_)) return;
+    if (std::has_single_bit(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
+    if (frame_ == 1 || !std::has_single_bit(frame_)) return;
     const image::Image now = renderer_.read(LAST_FRAME);
     if (!cameraAt_) {
         points_.push_back(pointOf(frame_, before_.pixels, now.pixels, runs));

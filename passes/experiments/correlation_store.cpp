@@ -124,9 +124,7 @@ void CorrelationStore::open(const std::vector<std::pair<std::string, std::string
     const std::filesystem::path file = path_ / "settings.json";
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) {
-        std::filesystem::create_directories(path_, ignored);
-        if (!std::filesystem::is_directory(path_, ignored))
-            throw Error("Cannot make the directory \"{}\".", path_.string());
+        files::createFolder(path_);
         const std::string text = jsonText(wanted, 2) + "\n";
         files::writeAtomically(file, std::as_bytes(std::span(text)));
         return;

@@ -15,13 +15,6 @@ constexpr uint32_t LAW_SHARE = 4;                    // single frames for the la
 constexpr uint64_t NEXT_BATCH = 0x9e3779b97f4a7c15u; // between seeds
 constexpr uint64_t LAW_SEED = 0x5851f42d4c957f2du;   // the law's random numbers are none of the chain's
 
-uint64_t nonFinite(Renderer& renderer)
-{
-    uint64_t sum = 0;
-    for (const auto& [stage, count] : renderer.stats().nonFinite) sum += count;
-    return sum;
-}
-
 } // namespace
 
 uint32_t lastFrame(const Settings& settings)
@@ -82,7 +75,7 @@ bool Correlator::step()
         return true;
     }
     if (!chain_) {
-        if (batch_.law) batch_.nonFinite = nonFinite(renderer);
+        if (batch_.law) batch_.nonFinite = sumOf(renderer.stats().nonFinite);
         renderer.apply(settings);
         chain_.emplace(renderer, cameraAt_);
     }
@@ -101,7 +94,7 @@ bool Correlator::complete() const
 CorrelationBatch Correlator::batch()
 {
     CorrelationBatch batch = batch_;
-    batch.nonFinite += nonFinite(*renderers_[subject_]);
+    batch.nonFinite += sumOf(renderers_[subject_]->stats().nonFinite);
     return batch;
 }
 

@@ -1,10 +1,10 @@
 #include "passes/experiments/race.h"
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 
 namespace passes
 {
@@ -79,7 +79,7 @@ Repeat Race::run(uint64_t seed, References& references, const std::function<void
     }
     for (Runner& runner : runners_) {
         repeat.finals.push_back(runner.renderer->read(cameraAt_ ? LAST_FRAME : MEAN));
-        for (const auto& [stage, count] : runner.renderer->stats().nonFinite) repeat.nonFinite += count;
+        repeat.nonFinite += sumOf(runner.renderer->stats().nonFinite);
     }
     repeat.complete = true;
     return repeat;
@@ -94,9 +94,7 @@ double Race::doneOf(const Runner& runner) const
 
 bool Race::slice(Runner& runner)
 {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     Renderer& renderer = *runner.renderer;
     const auto atEnd = [&] { return limits_.frames > 0 && renderer.frameCount() >= limits_.frames; };
     bool checkpoint = false;
@@ -104,9 +102,9 @@ bool Race::slice(Runner& runner)
         if (cameraAt_) renderer.setCamera(cameraAt_(renderer.frameCount()));
         renderer.renderFrame();
         checkpoint = isCheckpoint(renderer.frameCount(), cameraAt_ != nullptr);
-    } while (!checkpoint && !atEnd() && elapsed() < limits_.sliceSeconds);
+    } while (!checkpoint && !atEnd() && secondsSince(start) < limits_.sliceSeconds);
     renderer.wait();
-    runner.wallSeconds += elapsed();
+    runner.wallSeconds += secondsSince(start);
     runner.done = atEnd() || (limits_.frames == 0 && runner.wallSeconds >= limits_.seconds);
     return checkpoint || runner.done;
 }

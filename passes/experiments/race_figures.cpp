@@ -38,7 +38,7 @@ statistics::ErrorCurve RaceFigures::curve(size_t repeat, Lane lane, Figure figur
     statistics::ErrorCurve curve;
     for (const Sample* sample : samples(repeat, lane)) {
         curve.seconds.push_back(seconds(*sample));
-        curve.errors.push_back(figure(*sample));
+        curve.errors.push_back(sample->error.*figure);
     }
     return curve;
 }
@@ -102,7 +102,7 @@ std::vector<double> RaceFigures::after(Lane lane, Figure figure, uint64_t frames
     std::vector<double> values(repeats(), NONE);
     for (size_t r = 0; r < repeats(); ++r)
         for (const Sample* sample : samples(r, lane))
-            if (sample->frames == frames) values[r] = figure(*sample);
+            if (sample->frames == frames) values[r] = sample->error.*figure;
     return values;
 }
 
@@ -112,6 +112,14 @@ std::vector<double> RaceFigures::secondsAfter(Lane lane, uint64_t frames) const
     for (size_t r = 0; r < repeats(); ++r)
         for (const Sample* sample : samples(r, lane))
             if (sample->frames == frames) values[r] = seconds(*sample);
+    return values;
+}
+
+std::vector<double> RaceFigures::inTimeOf(Lane other, Lane lane, Figure figure, uint64_t frames) const
+{
+    std::vector<double> values = after(lane, figure, frames);
+    const std::vector<double> its = secondsAfter(other, frames), own = secondsAfter(lane, frames);
+    for (size_t r = 0; r < values.size(); ++r) values[r] *= own[r] / its[r];
     return values;
 }
 

@@ -11,7 +11,10 @@
 namespace passes
 {
 
-using Figure = double (*)(const Sample&);
+using Figure = double image::Metrics::*;
+constexpr Figure RELMSE = &image::Metrics::relmse, MSE = &image::Metrics::mse, CHROMA_MSE = &image::Metrics::chromaMse,
+                 LUMA_MSE = &image::Metrics::lumaMse, PSNR = &image::Metrics::psnr, SSIM = &image::Metrics::ssim,
+                 FLIP = &image::Metrics::flip;
 
 // What a line of a plot or table is about.
 struct Lane {
@@ -41,6 +44,8 @@ class RaceFigures
     std::vector<double> linearAt(Lane lane, Figure figure, double seconds) const; // of others: by log time only
     std::vector<double> after(Lane lane, Figure figure, uint64_t frames) const;
     std::vector<double> secondsAfter(Lane lane, uint64_t frames) const;
+    // after(), had each frame as many samples a pixel as fit into the time of one of `other`.
+    std::vector<double> inTimeOf(Lane other, Lane lane, Figure figure, uint64_t frames) const;
     std::vector<double> timesTo(Lane lane, Figure figure, double error) const;
     std::vector<double> slopes(Lane lane, Figure figure) const;
 

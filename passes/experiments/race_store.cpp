@@ -17,13 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr uint64_t MAX_FILE_BYTES = uint64_t{256} << 20;
 
-void createDirectory(const std::filesystem::path& directory)
-{
-    std::error_code failure;
-    std::filesystem::create_directories(directory, failure);
-    if (failure) throw Error("Cannot create the directory \"{}\": {}.", directory.string(), failure.message());
-}
-
 // The figures of a sample, in the order in which they are stored.
 template <class AnySample, class Visitor>
 void visitFigures(AnySample& s, Visitor&& visit)
@@ -82,11 +75,11 @@ void RaceStore::requireNew() const
 void RaceStore::write(size_t index, const Repeat& repeat) const
 {
     if (index == 0) {
-        createDirectory(directory_ / "pictures");
+        files::createFolder(directory_ / "pictures");
         for (size_t method = 0; method < repeat.finals.size(); ++method)
             image::write(picture(method), repeat.finals[method], {{"method", names_[method]}, {"settings-key", key_}});
     }
-    createDirectory(directory_ / "repeats");
+    files::createFolder(directory_ / "repeats");
     Json json = {{"key", key_}, {"repeat", index}, {"nonfinite", repeat.nonFinite}, {"samples", Json::array()}};
     for (const Sample& sample : repeat.samples) json["samples"].push_back(jsonOf(sample));
     const std::string text = jsonText(json) + "\n";

@@ -1,6 +1,7 @@
 #include "passes/experiments/reference.h"
 
 #include "engine/base/error.h"
+#include "engine/base/files.h"
 #include "engine/base/fingerprint.h"
 
 #include <algorithm>
@@ -148,10 +149,7 @@ const Reference* References::after(uint64_t frames)
         reference = trace();
         if (!reference) return nullptr;
         if (!options_.cache.empty()) {
-            std::error_code failure;
-            std::filesystem::create_directories(options_.cache, failure);
-            if (failure)
-                throw Error("Cannot create the cache folder \"{}\": {}.", options_.cache.string(), failure.message());
+            files::createFolder(options_.cache);
             image::write(file, reference->picture, metadataOf(*reference, key));
         }
     }

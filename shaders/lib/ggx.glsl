@@ -34,7 +34,8 @@ vec3 sampleVisibleNormal(vec3 wo, float a, vec2 u)
 
 float schlickWeight(float c)
 {
-    float x = clamp(1.0 - c, 0.0, 1.0);
+    float x = 1.0 - c;
+    x = x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x; // clamp() would make a number of NaN
     float x2 = x * x;
     return x2 * x2 * x;
 }

@@ -228,7 +228,7 @@ nlohmann::ordered_json raceFeatures(gpu::Device& device, const std::string& name
         // Colors are rows of the tables, which scenes without them lack.
         if (variant.*member || feature == "HAS_VERTEX_COLORS") continue;
         passes::Renderer& renderer = add(feature, scene::FeatureSet::Needed);
-        for (const auto& [stage, constants] : passes::stagesOf(renderer.scene(), settings, options.orbit != 0)) {
+        for (const auto& [stage, constants] : passes::stagesOf(renderer.scene(), {&settings, 1}, options.orbit != 0)) {
             passes::Variant more = constants;
             more.*member = true;
             renderer.pipelines()->put(

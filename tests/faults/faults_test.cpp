@@ -3,6 +3,7 @@
 
 #include "tests/support/trichrome.h"
 
+#include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
 #include "passes/checkpoint.h"
 
@@ -120,6 +121,23 @@ TEST_F(Faults, EndInOneSentenceOrARecoveryWithEveryFileWhole)
             }
     }
     for (const auto& [outcome, count] : outcomes) std::printf("%d faults %s\n", count, outcome.c_str());
+}
+
+// A CPU's driver promises memory that the system lacks, and the process is killed when it uses it. Buffers of a larger
+// picture than that of the test above are asked for.
+TEST_F(Faults, OfMemoryThatTheSystemLacksAreToldBeforeTheDriverPromisesIt)
+{
+    for (const gpu::Adapter& adapter : gpu::enumerateAdapters())
+        if (adapter.name.find(deviceName()) != std::string::npos && adapter.kind != "cpu")
+            GTEST_SKIP() << "SKIPPED, NOT TESTED: a graphics card has memory of its own";
+    const ScopedVariable plan("TRICHROME_FAULT", "_ZN6memory14availableBytesEv:1:0");
+    const Outcome outcome = run({"render", "cornell", "-o", picture, "--size", "1024x1024", "--frames", "1"}, {},
+                                SIGINT, "trichrome_faulty");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_TRUE(outcome.err.starts_with("trichrome: Buffer \"")) << outcome.err;
+    EXPECT_NE(outcome.err.find(" does not fit into the memory of "), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.err.ends_with("; reduce --size.\n")) << outcome.err;
+    EXPECT_TRUE(directory.entries().empty());
 }
 
 TEST_F(Faults, CtrlCAtAnyMomentLeavesWholeFilesOrThoseBefore)

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -137,6 +138,7 @@ FAULTY(fsync, int, failure(), (int descriptor), (descriptor))
 FAULTY(linkat, int, failure(), (int a, const char* from, int b, const char* to, int flags), (a, from, b, to, flags))
 FAULTY(rename, int, failure(), (const char* from, const char* to), (from, to))
 FAULTY(_Znwm, void*, throw std::bad_alloc(), (size_t size), (size))
+FAULTY(_ZN6memory14availableBytesEv, uint64_t, 0, (), ()) // memory::availableBytes()
 // clang-format on
 
 extern "C" int __real_open(const char* path, int flags, mode_t mode);

@@ -1,5 +1,4 @@
 // Checkpoints: a render that goes on from one ends with the same bits, and no damaged or foreign file is believed.
-// Covers passes/renderer_state.cpp.
 
 #include "passes/checkpoint.h"
 

@@ -78,7 +78,7 @@ TEST_F(FramePlan, TellsThoseWhoCompileAheadWhatAFrameAfterTheFirstRuns)
 {
     const auto listed = [](const passes::SceneOnDevice& scene, const passes::Settings& settings, bool moves) {
         Names names;
-        for (const auto& [name, variant] : passes::stagesOf(scene, settings, moves))
+        for (const auto& [name, variant] : passes::stagesOf(scene, {&settings, 1}, moves))
             names.push_back((variant.SAME_VIEW ? "=" : "") + name);
         return names;
     };

@@ -200,7 +200,7 @@ TEST_F(RendererTest, ListsTheStagesThatItsFramesConsistOf)
         renderer.apply(settings);
         frames(renderer, 2);
         std::set<std::string> listed, ran;
-        for (const auto& [name, variant] : passes::stagesOf(renderer.scene(), settings)) listed.insert(name);
+        for (const auto& [name, variant] : passes::stagesOf(renderer.scene(), {&settings, 1})) listed.insert(name);
         for (const auto& [name, milliseconds] : renderer.stats().stageMilliseconds) ran.insert(name);
         EXPECT_EQ(listed, ran);
     }

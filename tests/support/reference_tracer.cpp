@@ -1,7 +1,7 @@
 #include "tests/support/reference_tracer.h"
 
 #include "engine/base/check.h"
-#include "passes/camera_choice.h"
+#include "passes/camera_path.h"
 #include "tests/support/reference_material.h"
 
 #include <algorithm>

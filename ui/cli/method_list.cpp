@@ -68,11 +68,11 @@ std::vector<passes::NamedMethod> readMethods(const std::string& list, const pass
     return methods;
 }
 
-void MethodsOption::addTo(CLI::App& app, const std::string& initial)
+void addMethodsOption(CLI::App& app, std::string& list, const std::string& initial)
 {
-    list_ = initial;
+    list = initial;
     app.add_option(
-           "--methods", list_,
+           "--methods", list,
            "What is compared, separated by commas: METHOD, or a preset or its FILE.json, then :SHIFT or :NAME=VALUE as "
            "often as needed, as in rgb-restir:replay:spatial=0. Other settings are common to all.")
         ->option_text("LIST (" + initial + ")");

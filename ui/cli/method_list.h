@@ -16,14 +16,7 @@ namespace ui
 // that change what is seen (size, camera, bounces, filter, environment) or how long it is rendered.
 std::vector<passes::NamedMethod> readMethods(const std::string& list, const passes::Settings& base);
 
-class MethodsOption
-{
-  public:
-    void addTo(CLI::App& app, const std::string& initial); // must live until it is read
-    std::vector<passes::NamedMethod> read(const passes::Settings& base) const { return readMethods(list_, base); }
-
-  private:
-    std::string list_;
-};
+// --methods into `list`, which must live until it is read.
+void addMethodsOption(CLI::App& app, std::string& list, const std::string& initial);
 
 } // namespace ui

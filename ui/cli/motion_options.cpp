@@ -1,6 +1,6 @@
 #include "ui/cli/motion_options.h"
 
-#include "passes/camera_choice.h"
+#include "passes/camera_path.h"
 #include "ui/cli/number_range.h"
 #include "ui/cli/usage_error.h"
 

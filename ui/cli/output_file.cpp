@@ -8,6 +8,8 @@
 #include <cstring>
 #include <unistd.h>
 
+#include <fmt/ranges.h>
+
 namespace ui
 {
 
@@ -25,10 +27,9 @@ void requireApart(const NamedFile& output, const NamedFile& input)
 
 void requireWritable(const std::filesystem::path& file, std::initializer_list<const char*> extensions)
 {
-    std::string names;
-    for (const char* extension : extensions) names += (names.empty() ? "" : ", ") + std::string(extension);
     if (extensions.size() > 0 && std::ranges::find(extensions, files::extensionOf(file)) == extensions.end())
-        throw UsageError("Cannot write \"{}\": its extension must be one of: {}.", file.string(), names);
+        throw UsageError("Cannot write \"{}\": its extension must be one of: {}.", file.string(),
+                         fmt::join(extensions, ", "));
 
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))

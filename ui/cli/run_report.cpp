@@ -10,6 +10,15 @@ const char* version()
     return TRICHROME_VERSION;
 }
 
+std::string shellQuoted(const std::string& argument)
+{
+    const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+    std::string result = "'";
+    for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
 image::Metadata metadataOf(const RunReport& report)
 {
     image::Metadata metadata = passes::toText(report.settings);
@@ -29,8 +38,6 @@ nlohmann::ordered_json toJson(const RunReport& report)
 {
     nlohmann::ordered_json settings = passes::toJson(report.settings);
     for (const auto& [name, value] : report.extra) settings[name] = value;
-    uint64_t rayCount = 0;
-    for (const auto& [kind, count] : report.stats.rays) rayCount += count;
     const passes::RenderStats& stats = report.stats;
     return {{"scene", report.scene},
             {"method", settings["method"]},
@@ -48,7 +55,7 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"compile_seconds", stats.compileSeconds},
             {"stage_ms", stats.stageMilliseconds},
             {"rays", stats.rays},
-            {"rays_per_second", report.wallSeconds > 0 ? double(rayCount) / report.wallSeconds : 0},
+            {"rays_per_second", report.wallSeconds > 0 ? double(passes::sumOf(stats.rays)) / report.wallSeconds : 0},
             {"shifts", stats.shifts},
             {"trees_per_pixel", stats.treesPerPixel},
             {"nonfinite", stats.nonFinite},

@@ -16,6 +16,9 @@ namespace ui
 // The project's version, "0.1.0".
 const char* version();
 
+// A word of a command line for a POSIX shell.
+std::string shellQuoted(const std::string& argument);
+
 struct RunReport {
     std::string scene; // as on the command line
     passes::Settings settings;

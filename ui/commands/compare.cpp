@@ -32,6 +32,7 @@ struct Gate {
     const char* figure;
     double limit, value;
     bool passed;
+    std::string failure; // what is said when it has not
 };
 
 struct CompareCommand {
@@ -47,18 +48,13 @@ struct CompareCommand {
 std::vector<Gate> CompareCommand::gatesOf(const image::Metrics& metrics) const
 {
     std::vector<Gate> gates;
-    if (maxFlip) gates.push_back({"flip", *maxFlip, metrics.flip, metrics.flip <= *maxFlip});
-    if (minPsnr) gates.push_back({"psnr", *minPsnr, metrics.psnr, metrics.psnr >= *minPsnr});
+    if (maxFlip)
+        gates.push_back({"flip", *maxFlip, metrics.flip, metrics.flip <= *maxFlip,
+                         fmt::format("its FLIP of {:.5f} is above the limit of {}", metrics.flip, *maxFlip)});
+    if (minPsnr)
+        gates.push_back({"psnr", *minPsnr, metrics.psnr, metrics.psnr >= *minPsnr,
+                         fmt::format("its PSNR of {:.3f} dB is below the limit of {} dB", metrics.psnr, *minPsnr)});
     return gates;
-}
-
-std::string sentenceOf(const std::string& image, const Gate& gate)
-{
-    return std::string(gate.figure) == "flip"
-               ? fmt::format("Picture \"{}\": its FLIP of {:.5f} is above the limit of {}.", image, gate.value,
-                             gate.limit)
-               : fmt::format("Picture \"{}\": its PSNR of {:.3f} dB is below the limit of {} dB.", image, gate.value,
-                             gate.limit);
 }
 
 // JSON has no infinity: the PSNR of equal pictures and a ratio to 0 are null.
@@ -149,7 +145,7 @@ int CompareCommand::run() const
                                      [&] { return image::measure(first.loaded.image, picture.loaded.image); });
         facts.push_back(toJson(picture));
         for (const Gate& gate : gatesOf(picture.metrics))
-            if (!gate.passed) failures.push_back(sentenceOf(file, gate));
+            if (!gate.passed) failures.push_back(fmt::format("Picture \"{}\": {}.", file, gate.failure));
         pictures.push_back(std::move(picture));
     }
 

@@ -1,5 +1,7 @@
 // converge SCENE -o DIR: error against run time for several methods, as CSV, SVG and one page.
 
+#include "engine/base/clock.h"
+#include "engine/base/files.h"
 #include "engine/base/fingerprint.h"
 #include "passes/experiments/race.h"
 #include "passes/experiments/race_store.h"
@@ -19,7 +21,6 @@
 #include "ui/report/converge_page.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -31,12 +32,11 @@ namespace
 
 constexpr double DEFAULT_SECONDS = 10;
 constexpr uint64_t MIN_REFERENCE_FRAMES = 16, MAX_REFERENCE_FRAMES = 1 << 30;
-constexpr auto REPORT_INTERVAL = std::chrono::minutes(2); // a kill leaves a report at most so old
+constexpr double REPORT_SECONDS = 120; // a kill leaves a report at most so old
 
 struct ConvergeCommand {
     SceneSource scene;
-    std::string directory, reference = "auto";
-    MethodsOption methods;
+    std::string directory, methods, reference = "auto";
     size_t runs = 8;
     passes::Precision precision;
     bool resume = false, quiet = false;
@@ -51,18 +51,12 @@ struct ConvergeCommand {
     void write(ConvergeReport& report, const passes::RaceStore& store, const passes::References& references) const;
 };
 
-std::vector<passes::Settings> settingsOf(const std::vector<passes::NamedMethod>& methods)
+template <class Value>
+std::vector<Value> each(const std::vector<passes::NamedMethod>& methods, Value passes::NamedMethod::*value)
 {
-    std::vector<passes::Settings> list;
-    for (const passes::NamedMethod& method : methods) list.push_back(method.settings);
-    return list;
-}
-
-std::vector<std::string> namesOf(const std::vector<passes::NamedMethod>& methods)
-{
-    std::vector<std::string> list;
-    for (const passes::NamedMethod& method : methods) list.push_back(method.name);
-    return list;
+    std::vector<Value> values;
+    for (const passes::NamedMethod& method : methods) values.push_back(method.*value);
+    return values;
 }
 
 // The path tracer, first in the list when it is not there.
@@ -134,7 +128,7 @@ int ConvergeCommand::run() const
 {
     passes::Settings wanted = settings.read();
     motion.adjust(wanted, settings);
-    ConvergeReport report{.scene = scene.name, .methods = methods.read(wanted), .moving = motion.moving()};
+    ConvergeReport report{.scene = scene.name, .methods = readMethods(methods, wanted), .moving = motion.moving()};
     report.pt = ensurePathTracer(report.methods, wanted);
     report.precision = precision.error;
     const passes::Race::Limits limits = limitsOf(wanted);
@@ -142,17 +136,14 @@ int ConvergeCommand::run() const
         if (report.moving) throw UsageError("--reference FILE cannot be combined with a moving camera: use auto.");
         report.referenceFile = reference;
     }
-    NamedFiles files;
+    NamedFiles named;
     for (const char* file : {"index.html", "converge.csv", "reference.exr"})
-        files.writes("--output", std::filesystem::path(directory) / file);
-    if (reference != "auto") files.reads("--reference", reference);
-    motion.name(files);
-    settings.name(files, wanted);
-    files.reads("SCENE", scene.name);
-    std::error_code failure;
-    std::filesystem::create_directories(directory, failure);
-    if (failure || !std::filesystem::is_directory(directory))
-        throw Error("Cannot create the directory \"{}\"{}.", directory, failure ? ": " + failure.message() : "");
+        named.writes("--output", std::filesystem::path(directory) / file);
+    if (reference != "auto") named.reads("--reference", reference);
+    motion.name(named);
+    settings.name(named, wanted);
+    named.reads("SCENE", scene.name);
+    files::createFolder(directory);
     requireWritable(std::filesystem::path(directory) / "index.html");
 
     Progress progress(quiet);
@@ -169,13 +160,13 @@ int ConvergeCommand::run() const
     for (const passes::NamedMethod& method : report.methods)
         report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));
 
-    const passes::RaceStore store(directory, keyOf(report, limits), namesOf(report.methods));
+    const passes::RaceStore store(directory, keyOf(report, limits), each(report.methods, &passes::NamedMethod::name));
     if (resume)
         report.repeats = store.read(runs);
     else
         store.requireNew();
 
-    passes::Race race(gpu, world, settingsOf(report.methods), cameraAt, limits,
+    passes::Race race(gpu, world, each(report.methods, &passes::NamedMethod::settings), cameraAt, limits,
                       [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
     const Interrupt interrupt;
     const auto stop = [&] { return interrupt.requested(); };
@@ -189,7 +180,7 @@ int ConvergeCommand::run() const
             : passes::References(reference, wanted);
     for (const std::string& warning : references.warnings()) fmt::print(stderr, "Warning: {}\n", warning);
 
-    auto written = std::chrono::steady_clock::now();
+    auto written = Clock::now();
     if (!report.moving || !report.repeats.empty()) references.after(limits.frames);
     while (report.repeats.size() < runs && !stop()) {
         const size_t index = report.repeats.size();
@@ -198,10 +189,10 @@ int ConvergeCommand::run() const
             [&](double done) { progress.show("Measuring", double(index) + done, double(runs), "repeats"); }, stop);
         if (repeat.complete) store.write(index, repeat);
         report.repeats.push_back(std::move(repeat));
-        if (report.repeats.size() == runs || std::chrono::steady_clock::now() - written < REPORT_INTERVAL) continue;
+        if (report.repeats.size() == runs || secondsSince(written) < REPORT_SECONDS) continue;
         report.provenance.partial = true;
         write(report, store, references);
-        written = std::chrono::steady_clock::now();
+        written = Clock::now();
     }
     progress.clear();
     const auto complete = size_t(std::ranges::count_if(report.repeats, &passes::Repeat::complete));
@@ -232,7 +223,7 @@ Action setUpConverge(CLI::App& app)
            "as SVG, pictures as EXR.")
         ->option_text("DIR")
         ->required();
-    command->methods.addTo(app, "pt,restir-pt,rgb-restir");
+    addMethodsOption(app, command->methods, "pt,restir-pt,rgb-restir");
     app.add_option(
            "--runs", command->runs,
            "Repeats, each with seeds of its own; intervals come from them. Methods take turns within each. Each "

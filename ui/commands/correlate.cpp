@@ -1,5 +1,6 @@
 // correlate SCENE -o DIR: the paper's experiment, how strongly frames of temporal reuse depend on each other.
 
+#include "engine/base/clock.h"
 #include "passes/experiments/correlation_store.h"
 #include "passes/experiments/correlator.h"
 #include "ui/cli/device_options.h"
@@ -17,7 +18,6 @@
 #include "ui/report/correlation_page.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -47,12 +47,11 @@ passes::Settings protocol()
 
 struct CorrelateCommand {
     SceneSource scene;
-    std::string output;
+    std::string output, methods;
     uint32_t runs = 32, batch = 16;
     bool resume = false, quiet = false;
     DeviceOptions device;
     MotionOptions motion;
-    MethodsOption methods;
     SettingsOptions settings{protocol()};
 
     passes::Settings readSettings() const;
@@ -72,7 +71,7 @@ passes::Settings CorrelateCommand::readSettings() const
 
 std::vector<passes::NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
 {
-    std::vector<passes::NamedMethod> list = methods.read(base);
+    std::vector<passes::NamedMethod> list = ui::readMethods(methods, base);
     for (const passes::NamedMethod& method : list) {
         if (method.settings.method == passes::Method::Pt)
             throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);
@@ -166,11 +165,10 @@ int CorrelateCommand::run() const
         }
 
     const Interrupt interrupt;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     uint64_t rendered = 0;
     for (const Item& item : items) {
-        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (item.index > 0 && base.seconds > 0 && elapsed >= base.seconds) break;
+        if (item.index > 0 && base.seconds > 0 && secondsSince(start) >= base.seconds) break;
         correlator.begin(item.subject, item.index, sizes[item.index]);
         do {
             correlator.step();
@@ -205,8 +203,7 @@ int CorrelateCommand::run() const
                       .settings = facts,
                       .partial = correlation.partial});
     if (correlation.nonFinite > 0)
-        std::fprintf(stderr, "Warning: %llu values were not finite and counted as 0.\n",
-                     static_cast<unsigned long long>(correlation.nonFinite));
+        fmt::print(stderr, "Warning: {} values were not finite and counted as 0.\n", correlation.nonFinite);
     for (const std::string& sentence : verdictsOf(correlation)) std::printf("%s\n", sentence.c_str());
     std::printf("The page: %s\n", (std::filesystem::path(output) / "index.html").c_str());
     if (!correlation.partial) return 0;
@@ -227,7 +224,7 @@ Action setUpCorrelate(CLI::App& app)
            "it is missing.")
         ->option_text("DIR")
         ->required();
-    command->methods.addTo(app, "restir-pt,rgb-restir");
+    addMethodsOption(app, command->methods, "restir-pt,rgb-restir");
     app.add_option(
            "--runs", command->runs,
            "Independent runs, over which covariances are taken. With temporal reuse alone pixels are independent "

@@ -29,11 +29,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-void print(const std::string& line)
-{
-    std::puts(line.c_str());
-}
-
 std::string megabytes(uint64_t bytes)
 {
     return fmt::format("{:.1f} MiB", double(bytes) / 1048576);
@@ -82,16 +77,15 @@ Json devicesJson(const std::string& tuning)
 
 void printDevices(const Json& devices)
 {
-    if (devices.empty()) print("No Vulkan device: the loader found no driver (Debian: mesa-vulkan-drivers).");
+    if (devices.empty()) std::puts("No Vulkan device: the loader found no driver (Debian: mesa-vulkan-drivers).");
     for (const Json& device : devices) {
-        print(fmt::format("Device {}: {} ({}; {}; Vulkan {})", device["index"].get<uint32_t>(),
-                          device["name"].get<std::string>(), device["kind"].get<std::string>(),
-                          device["driver"].get<std::string>(), device["api_version"].get<std::string>()));
-        for (const auto& [name, value] : device["limits"].items())
-            print(fmt::format("    {:<28}{}", name, jsonText(value)));
-        print("    Chosen by the device's class, or by --device-tuning:");
+        fmt::print("Device {}: {} ({}; {}; Vulkan {})\n", device["index"].get<uint32_t>(),
+                   device["name"].get<std::string>(), device["kind"].get<std::string>(),
+                   device["driver"].get<std::string>(), device["api_version"].get<std::string>());
+        for (const auto& [name, value] : device["limits"].items()) fmt::print("    {:<28}{}\n", name, jsonText(value));
+        std::puts("    Chosen by the device's class, or by --device-tuning:");
         for (const auto& [name, value] : device["tuning"].items())
-            print(fmt::format("    {:<28}{}", name, value.get<std::string>()));
+            fmt::print("    {:<28}{}\n", name, value.get<std::string>());
     }
 }
 
@@ -196,11 +190,11 @@ void printMotion(const Json& motion)
         std::string moves;
         for (const auto& [words, count] : animation["moves"].items())
             moves += fmt::format("{}{} of {}", moves.empty() ? "" : ", ", words, count.get<uint64_t>());
-        print(fmt::format("Animation {} \"{}\": {:.3f} s, {} keys; {}", index++, animation["name"].get<std::string>(),
-                          animation["seconds"].get<double>(), animation["keys"].get<uint64_t>(),
-                          animation.contains("fault") ? "cannot be played: " + animation["fault"].get<std::string>()
-                          : moves.empty()             ? "moves nothing"
-                                                      : "moves " + moves));
+        fmt::print("Animation {} \"{}\": {:.3f} s, {} keys; {}\n", index++, animation["name"].get<std::string>(),
+                   animation["seconds"].get<double>(), animation["keys"].get<uint64_t>(),
+                   animation.contains("fault") ? "cannot be played: " + animation["fault"].get<std::string>()
+                   : moves.empty()             ? "moves nothing"
+                                               : "moves " + moves);
     }
     std::string text;
     for (const char* what : {"rigid_parts", "deforming_parts", "triangles", "nodes", "skins", "joints", "morph_targets",
@@ -210,38 +204,35 @@ void printMotion(const Json& motion)
         if (motion[what] != 0)
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", motion[what].get<uint64_t>(), words);
     }
-    print(
-        fmt::format("Can move: {}; {} on the host", text.empty() ? "nothing" : text, megabytes(motion["host_bytes"])));
+    fmt::print("Can move: {}; {} on the host\n", text.empty() ? "nothing" : text, megabytes(motion["host_bytes"]));
 }
 
 void printScene(const Json& scene, const passes::Settings& settings)
 {
     const Json& bvh = scene["bvh"];
-    print(fmt::format("Scene \"{}\": {} triangles, {} vertices, {} materials, {} images",
-                      scene["scene"].get<std::string>(), scene["triangles"].get<uint64_t>(),
-                      scene["vertices"].get<uint64_t>(), scene["materials"].get<uint64_t>(),
-                      scene["images"].get<uint64_t>()));
+    fmt::print("Scene \"{}\": {} triangles, {} vertices, {} materials, {} images\n", scene["scene"].get<std::string>(),
+               scene["triangles"].get<uint64_t>(), scene["vertices"].get<uint64_t>(),
+               scene["materials"].get<uint64_t>(), scene["images"].get<uint64_t>());
     std::string lights;
     for (const auto& [kind, count] : scene["lights"].items())
         if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
-    print("Lights: " + lights);
-    print("Cameras: " + jsonText(scene["cameras"]));
+    fmt::print("Lights: {}\nCameras: {}\n", lights, jsonText(scene["cameras"]));
     if (!scene["motion"].is_null()) printMotion(scene["motion"]);
-    print(fmt::format("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s",
-                      bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
-                      bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>()));
-    print(fmt::format("Memory: {} for the scene, {:.0f} bytes per pixel, {} in all at {}x{}",
-                      megabytes(scene["scene_bytes"]), scene["bytes_per_pixel"].get<double>(),
-                      megabytes(scene["memory_bytes"]), settings.width, settings.height));
+    fmt::print("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s\n",
+               bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
+               bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>());
+    fmt::print("Memory: {} for the scene, {:.0f} bytes per pixel, {} in all at {}x{}\n",
+               megabytes(scene["scene_bytes"]), scene["bytes_per_pixel"].get<double>(),
+               megabytes(scene["memory_bytes"]), settings.width, settings.height);
     if (settings.method != passes::Method::Pt)
-        print(fmt::format("Reservoirs: {:.0f} bytes per pixel and reservoir, for this frame's and the previous one's",
-                          scene["reservoir_bytes_per_pixel"].get<double>()));
+        fmt::print("Reservoirs: {:.0f} bytes per pixel and reservoir, for this frame's and the previous one's\n",
+                   scene["reservoir_bytes_per_pixel"].get<double>());
     for (const bool in : {true, false}) {
-        print(in ? "Compiled in:" : "Left out, because neither scene, settings nor device need it:");
+        std::puts(in ? "Compiled in:" : "Left out, because neither scene, settings nor device need it:");
         for (const auto& [name, fact] : scene["variant"].items())
             if ((fact["value"] != "off") == in)
-                print(fmt::format("    {:<34}{}{}", name, fact["meaning"].get<std::string>(),
-                                  fact["value"] == "on" || !in ? "" : ": " + fact["value"].get<std::string>()));
+                fmt::print("    {:<34}{}{}\n", name, fact["meaning"].get<std::string>(),
+                           fact["value"] == "on" || !in ? "" : ": " + fact["value"].get<std::string>());
     }
 }
 
@@ -257,7 +248,7 @@ int InfoCommand::run() const
     if (scenes) {
         facts["scenes"] = scenesJson();
         for (const scene::BuiltInScene& builtIn : scene::builtInScenes())
-            print(fmt::format("{:<10}{}", builtIn.name, builtIn.description));
+            fmt::print("{:<10}{}\n", builtIn.name, builtIn.description);
     } else if (scene.name.empty()) {
         facts["devices"] = devicesJson(device.tuning());
         printDevices(facts["devices"]);
@@ -272,7 +263,7 @@ int InfoCommand::run() const
         facts["tuning"] = tuningJson(gpu.adapter().tuning);
         facts["scene"] = sceneJson(scene.name, world, renderer.stats());
         printScene(facts["scene"], chosen);
-        print("Device: " + gpu.adapter().name + ", tuned " + gpu::toText(gpu.adapter().tuning));
+        fmt::print("Device: {}, tuned {}\n", gpu.adapter().name, gpu::toText(gpu.adapter().tuning));
     }
     if (!json.empty()) writeText(json, jsonText(facts, 2) + "\n");
     return 0;

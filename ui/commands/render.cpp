@@ -1,5 +1,6 @@
 // render SCENE -o FILE: frames of one scene into one picture.
 
+#include "engine/base/clock.h"
 #include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "passes/renderer.h"
@@ -16,7 +17,6 @@
 #include "ui/commands/commands.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -27,11 +27,6 @@ namespace ui
 
 namespace
 {
-
-double secondsSince(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 struct RenderCommand {
     SceneSource scene;
@@ -48,13 +43,13 @@ struct RenderCommand {
 
 // Until the settings say stop, or Ctrl-C or SIGTERM does.
 void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, CheckpointOptions& checkpoint,
-                  Progress& progress, RunReport& report, std::chrono::steady_clock::time_point commandStart)
+                  Progress& progress, RunReport& report, Clock::time_point commandStart)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
     const Interrupt interrupt;
     const double before = checkpoint.start(renderer, report);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     double elapsed = before;
     report.frames = renderer.frameCount();
     const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
@@ -81,7 +76,7 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
 
 int RenderCommand::run()
 {
-    const auto commandStart = std::chrono::steady_clock::now();
+    const auto commandStart = Clock::now();
     RunReport report{.scene = scene.name, .settings = settings.read(), .extra = scene.toText()};
     for (auto& fact : motion.toText()) report.extra.push_back(std::move(fact));
     motion.adjust(report.settings, settings);
@@ -103,7 +98,7 @@ int RenderCommand::run()
     checkpoint.requireWritable();
 
     Progress progress(quiet);
-    const auto loadStart = std::chrono::steady_clock::now();
+    const auto loadStart = Clock::now();
     gpu::Device gpu = device.open(checkpoint.resumes());
     const scene::Scene world = openScene(scene, report.settings, progress);
     for (const std::filesystem::path& file : world.files) named.reads("SCENE", file);
@@ -127,11 +122,10 @@ int RenderCommand::run()
 
     for (const auto& [stage, count] : report.stats.nonFinite)
         if (count > 0)
-            std::fprintf(stderr, "Warning: stage %s found %llu values that are not finite and counted them as 0.\n",
-                         stage.c_str(), static_cast<unsigned long long>(count));
+            fmt::print(stderr, "Warning: stage {} found {} values that are not finite and counted them as 0.\n", stage,
+                       count);
     if (!report.partial) return kept ? 0 : 1;
-    std::fprintf(stderr, "Interrupted: %s is partial, marked so, with %llu frames.\n", output.c_str(),
-                 static_cast<unsigned long long>(report.frames));
+    fmt::print(stderr, "Interrupted: {} is partial, marked so, with {} frames.\n", output, report.frames);
     return Interrupt::exitCode();
 }
 

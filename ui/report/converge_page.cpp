@@ -1,6 +1,7 @@
 #include "ui/report/converge_page.h"
 
 #include "engine/image/image.h"
+#include "ui/report/crops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,38 +20,14 @@ using passes::Lane;
 using passes::Sample;
 using Values = std::vector<double>;
 
-double relmseOf(const Sample& s)
-{
-    return s.error.relmse;
-}
-double mseOf(const Sample& s)
-{
-    return s.error.mse;
-}
-double chromaOf(const Sample& s)
-{
-    return s.error.chromaMse;
-}
-double lumaOf(const Sample& s)
-{
-    return s.error.lumaMse;
-}
-double psnrOf(const Sample& s)
-{
-    return s.error.psnr;
-}
-double ssimOf(const Sample& s)
-{
-    return s.error.ssim;
-}
-double flipOf(const Sample& s)
-{
-    return s.error.flip;
-}
-
 std::string number(double value, const char* format = "{:.3g}")
 {
     return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "–";
+}
+
+std::string medianText(const Values& values, const char* format = "{:.3g}")
+{
+    return number(passes::finiteMedian(values), format);
 }
 
 std::string withInterval(double value, const statistics::Interval& interval)
@@ -63,7 +40,7 @@ std::string withInterval(double value, const statistics::Interval& interval)
 // Of errors: the median, and the interval of the geometric mean.
 std::string errorText(const Values& values)
 {
-    if (!passes::allAboveZero(values)) return number(passes::finiteMedian(values));
+    if (!passes::allAboveZero(values)) return medianText(values);
     return withInterval(statistics::median(values), statistics::factorOf(values).interval);
 }
 
@@ -82,18 +59,6 @@ std::string meanText(const Values& values)
     if (moments.count() == 0) return "–";
     const double degrees = double(moments.count() - 1);
     return withInterval(moments.mean(), statistics::meanInterval({moments.mean(), moments.varianceOfMean(), degrees}));
-}
-
-Values product(Values a, const Values& b)
-{
-    for (size_t i = 0; i < a.size(); ++i) a[i] *= b[i];
-    return a;
-}
-
-Values quotient(Values a, const Values& b)
-{
-    for (size_t i = 0; i < a.size(); ++i) a[i] /= b[i];
-    return a;
 }
 
 struct Writer {
@@ -117,7 +82,7 @@ struct Writer {
     {
         double error = 0;
         for (const Lane lane : means)
-            error = std::max(error, passes::finiteMedian(figures.at(lane, relmseOf, seconds)));
+            error = std::max(error, passes::finiteMedian(figures.at(lane, passes::RELMSE, seconds)));
         return error;
     }
 
@@ -125,10 +90,8 @@ struct Writer {
     // with as many samples a pixel as fit into a frame.
     Values pathTracerInTimeOf(Lane lane, passes::Figure figure) const
     {
+        if (report.moving) return figures.inTimeOf(lane, pt(false), figure, frames);
         const Values own = figures.secondsAfter(lane, frames);
-        if (report.moving)
-            return product(figures.after(pt(false), figure, frames),
-                           quotient(figures.secondsAfter(pt(false), frames), own));
         Values values;
         for (size_t r = 0; r < own.size(); ++r)
             values.push_back(statistics::errorAt(figures.curve(r, pt(true), figure), own[r])
@@ -144,7 +107,7 @@ struct Writer {
             if (!samples.empty())
                 values.push_back(1000 * figures.seconds(*samples.back()) / double(samples.back()->frames));
         }
-        return number(passes::finiteMedian(values));
+        return medianText(values);
     }
 
     Json meansTable() const
@@ -152,6 +115,9 @@ struct Writer {
         const double error = commonError();
         std::vector<std::vector<std::string>> rows;
         for (const Lane lane : means) {
+            const auto toPt = [&](passes::Figure figure) {
+                return ratioText(figures.at(lane, figure, seconds), figures.at(pt(true), figure, seconds));
+            };
             Values done;
             for (size_t r = 0; r < figures.repeats(); ++r) {
                 double last = 0;
@@ -159,20 +125,17 @@ struct Writer {
                     if (figures.seconds(*sample) <= seconds * (1 + 1e-9)) last = double(sample->frames);
                 done.push_back(last);
             }
-            const Values times = figures.timesTo(lane, relmseOf, error);
+            const Values times = figures.timesTo(lane, passes::RELMSE, error);
             const auto missed = std::ranges::count_if(times, [](double t) { return !std::isfinite(t); });
-            rows.push_back({nameOf(lane), number(passes::finiteMedian(done)), millisecondsPerFrame(lane),
-                            errorText(figures.at(lane, relmseOf, seconds)),
-                            ratioText(figures.at(lane, relmseOf, seconds), figures.at(pt(true), relmseOf, seconds)),
-                            ratioText(figures.at(lane, mseOf, seconds), figures.at(pt(true), mseOf, seconds)),
-                            ratioText(figures.at(lane, chromaOf, seconds), figures.at(pt(true), chromaOf, seconds)),
-                            number(passes::finiteMedian(figures.linearAt(lane, psnrOf, seconds)), "{:.2f}"),
-                            number(passes::finiteMedian(figures.linearAt(lane, ssimOf, seconds)), "{:.3f}"),
-                            number(passes::finiteMedian(figures.linearAt(lane, flipOf, seconds)), "{:.3f}"),
-                            missed > 0 ? fmt::format("{} ({} of {} repeats did not)",
-                                                     number(passes::finiteMedian(times)), missed, times.size())
-                                       : number(passes::finiteMedian(times)),
-                            meanText(figures.slopes(lane, relmseOf))});
+            rows.push_back(
+                {nameOf(lane), medianText(done), millisecondsPerFrame(lane),
+                 errorText(figures.at(lane, passes::RELMSE, seconds)), toPt(passes::RELMSE), toPt(passes::MSE),
+                 toPt(passes::CHROMA_MSE), medianText(figures.linearAt(lane, passes::PSNR, seconds), "{:.2f}"),
+                 medianText(figures.linearAt(lane, passes::SSIM, seconds), "{:.3f}"),
+                 medianText(figures.linearAt(lane, passes::FLIP, seconds), "{:.3f}"),
+                 missed > 0 ? fmt::format("{} ({} of {} repeats did not)", medianText(times), missed, times.size())
+                            : medianText(times),
+                 meanText(figures.slopes(lane, passes::RELMSE))});
         }
         const std::string least = fmt::format("{:.3g}", error);
         Json table = tableData({"method", "frames", "ms/frame", "relative MSE", "to pt", "MSE to pt",
@@ -187,16 +150,17 @@ struct Writer {
     {
         std::vector<std::vector<std::string>> rows;
         for (const Lane lane : singles) {
-            const Values errors = figures.after(lane, relmseOf, frames);
+            const Values errors = figures.after(lane, passes::RELMSE, frames);
+            const auto inSameTime = [&](passes::Figure figure) {
+                return ratioText(figures.after(lane, figure, frames), pathTracerInTimeOf(lane, figure));
+            };
             rows.push_back({nameOf(lane), millisecondsPerFrame(lane), errorText(errors),
-                            ratioText(errors, figures.after(pt(false), relmseOf, frames)),
-                            ratioText(errors, pathTracerInTimeOf(lane, relmseOf)),
-                            ratioText(figures.after(lane, mseOf, frames), pathTracerInTimeOf(lane, mseOf)),
-                            ratioText(figures.after(lane, lumaOf, frames), pathTracerInTimeOf(lane, lumaOf)),
-                            ratioText(figures.after(lane, chromaOf, frames), pathTracerInTimeOf(lane, chromaOf)),
-                            number(passes::finiteMedian(figures.after(lane, psnrOf, frames)), "{:.2f}"),
-                            number(passes::finiteMedian(figures.after(lane, ssimOf, frames)), "{:.3f}"),
-                            number(passes::finiteMedian(figures.after(lane, flipOf, frames)), "{:.3f}")});
+                            ratioText(errors, figures.after(pt(false), passes::RELMSE, frames)),
+                            inSameTime(passes::RELMSE), inSameTime(passes::MSE), inSameTime(passes::LUMA_MSE),
+                            inSameTime(passes::CHROMA_MSE),
+                            medianText(figures.after(lane, passes::PSNR, frames), "{:.2f}"),
+                            medianText(figures.after(lane, passes::SSIM, frames), "{:.3f}"),
+                            medianText(figures.after(lane, passes::FLIP, frames), "{:.3f}")});
         }
         return tableData({"method", "ms/frame", "relative MSE", "to a frame of pt", "to pt, same time",
                           "MSE, same time", "luma MSE, same time", "chroma MSE, same time", "PSNR dB", "SSIM", "FLIP"},
@@ -207,32 +171,29 @@ struct Writer {
     {
         const char* figure = "relative MSE";
         std::vector<std::string> sentences;
-        const auto add = [&](const std::string& where, const auto& errorsOf) {
+        const auto add = [&](const std::string& where, const std::vector<Lane>& lanes, const auto& errorsOf) {
             std::vector<statistics::Contender> contenders;
-            for (uint32_t method = 0; method < report.methods.size(); ++method)
-                contenders.push_back({report.methods[method].name, errorsOf(method)});
+            for (const Lane lane : lanes) contenders.push_back({nameOf(lane), errorsOf(lane)});
             sentences.push_back(statistics::verdict(contenders, figure, where));
         };
         if (figures.repeats() == 0) return {"No repeat was measured, so nothing can be said."};
         if (!report.moving)
             add(fmt::format("In {} with a resting camera, means of all frames, equal time ({:.3g} s each):",
                             report.scene, seconds),
-                [&](uint32_t method) {
-                    return figures.at({method, true}, relmseOf, seconds);
-                });
+                means, [&](Lane lane) { return figures.at(lane, passes::RELMSE, seconds); });
         if (frames == 0) return sentences;
         add(fmt::format("In {} with a {} camera, single frames after {} of them:", report.scene,
                         report.moving ? "moving" : "resting", frames),
-            [&](uint32_t method) {
-                return figures.after({method, false}, relmseOf, frames);
-            });
+            singles, [&](Lane lane) { return figures.after(lane, passes::RELMSE, frames); });
         if (report.moving)
             add(fmt::format("In {} with a moving camera, equal time a frame (error times time: pt may trace more "
                             "samples):",
                             report.scene),
-                [&](uint32_t method) {
-                    const Lane lane{method, false};
-                    return product(figures.after(lane, relmseOf, frames), figures.secondsAfter(lane, frames));
+                singles, [&](Lane lane) {
+                    Values costs = figures.after(lane, passes::RELMSE, frames);
+                    const Values times = figures.secondsAfter(lane, frames);
+                    for (size_t r = 0; r < costs.size(); ++r) costs[r] *= times[r];
+                    return costs;
                 });
         return sentences;
     }
@@ -294,15 +255,13 @@ struct Writer {
         if (report.pictures.size() != report.methods.size() || report.references.empty()) return false;
         const image::Image& reference = report.references.rbegin()->second.picture;
         const glm::uvec2 size(std::max(reference.width / 4, 1u), std::max(reference.height / 4, 1u));
-        const glm::uvec2 corner = worstWindow(reference, size);
+        const glm::ivec2 corner = worstWindow(reference, size);
+        const Crop detail{corner.x, corner.y, int(size.x), int(size.y)};
         Json shown;
         const auto add = [&](const image::Image& picture, const std::string& caption) {
-            image::Image crop{.width = size.x, .height = size.y};
-            for (uint32_t y = 0; y < size.y; ++y)
-                for (uint32_t x = 0; x < size.x; ++x) crop.pixels.push_back(picture.at(corner.x + x, corner.y + y));
             shown.push_back({{"caption", caption},
                              {"png", pngAddress(image::tonemappedPng(picture, {}))},
-                             {"detail", pngAddress(image::tonemappedPng(crop, {}))}});
+                             {"detail", pngAddress(image::tonemappedPng(cropped(picture, detail), {}))}});
         };
         add(reference, "reference");
         for (uint32_t method = 0; method < report.methods.size(); ++method) {

@@ -5,6 +5,9 @@
 #include "engine/base/csv.h"
 #include "ui/report/plot.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 namespace ui
@@ -14,19 +17,6 @@ namespace
 {
 
 constexpr size_t LEAST_FOR_INTERVALS = 4; // with fewer repeats intervals are as large as the plot
-
-double relmseOf(const passes::Sample& s)
-{
-    return s.error.relmse;
-}
-double mseOf(const passes::Sample& s)
-{
-    return s.error.mse;
-}
-double chromaOf(const passes::Sample& s)
-{
-    return s.error.chromaMse;
-}
 
 struct Curves {
     const ConvergeReport& report;
@@ -81,10 +71,7 @@ struct Curves {
                           .mark = Series::Mark::Dashed,
                           .color = int(method)};
             for (const uint64_t frames : figures.framesOf(lane)) {
-                std::vector<double> errors = figures.after(pt, figure, frames);
-                const std::vector<double> own = figures.secondsAfter(lane, frames);
-                const std::vector<double> its = figures.secondsAfter(pt, frames);
-                for (size_t r = 0; r < errors.size(); ++r) errors[r] *= its[r] / own[r];
+                const std::vector<double> errors = figures.inTimeOf(lane, pt, figure, frames);
                 if (!passes::allAboveZero(errors)) continue;
                 series.x.push_back(double(frames));
                 series.y.push_back(statistics::factorOf(errors).value);
@@ -94,11 +81,6 @@ struct Curves {
         return list;
     }
 };
-
-void append(std::vector<Series>& list, std::vector<Series> more)
-{
-    for (Series& series : more) list.push_back(std::move(series));
-}
 
 } // namespace
 
@@ -151,22 +133,22 @@ std::vector<NamedPlot> convergePlots(const ConvergeReport& report)
         if (const std::optional<std::string> svg = drawSvg(plot)) plots.push_back({file, caption + bars, *svg});
     };
     if (report.moving) {
-        std::vector<Series> frames = curves.all(false, relmseOf, false);
-        append(frames, curves.pathTracerInTimeOf(relmseOf));
+        std::vector<Series> frames = curves.all(false, passes::RELMSE, false);
+        std::ranges::move(curves.pathTracerInTimeOf(passes::RELMSE), std::back_inserter(frames));
         add("relmse-frames.svg",
             "Error of single frames while the camera moves. Dashed: the path tracer with as many samples a pixel as "
             "fit "
             "into the time of that method's frame.",
             {.title = "error of the last frame", .xLabel = "frames", .yLabel = "relative MSE", .series = frames});
-        std::vector<Series> chroma = curves.all(false, chromaOf, false);
-        append(chroma, curves.pathTracerInTimeOf(chromaOf));
+        std::vector<Series> chroma = curves.all(false, passes::CHROMA_MSE, false);
+        std::ranges::move(curves.pathTracerInTimeOf(passes::CHROMA_MSE), std::back_inserter(chroma));
         add("chroma-frames.svg", "Color noise of the same frames.",
             {.title = "chroma error of the last frame", .xLabel = "frames", .yLabel = "chroma MSE", .series = chroma});
         add("relmse-seconds.svg", "The same frames against the time that all frames so far took.",
             {.title = "error of the last frame",
              .xLabel = seconds,
              .yLabel = "relative MSE",
-             .series = curves.all(false, relmseOf, true)});
+             .series = curves.all(false, passes::RELMSE, true)});
         return plots;
     }
     struct ByTime {
@@ -174,16 +156,16 @@ std::vector<NamedPlot> convergePlots(const ConvergeReport& report)
         passes::Figure figure;
     };
     for (const auto& [file, name, figure] :
-         {ByTime{"relmse-seconds.svg", "relative MSE", relmseOf}, ByTime{"mse-seconds.svg", "MSE", mseOf},
-          ByTime{"chroma-seconds.svg", "chroma MSE", chromaOf}}) {
+         {ByTime{"relmse-seconds.svg", "relative MSE", passes::RELMSE}, ByTime{"mse-seconds.svg", "MSE", passes::MSE},
+          ByTime{"chroma-seconds.svg", "chroma MSE", passes::CHROMA_MSE}}) {
         std::vector<Series> list = curves.all(true, figure, true);
         list.push_back(curves.law(list[report.pt], "slope -1"));
         add(file, fmt::format("{} of the mean of all frames against time: lower is better.", name),
             {.title = "error against time", .xLabel = seconds, .yLabel = name, .series = list});
     }
-    std::vector<Series> list = curves.all(true, relmseOf, false);
+    std::vector<Series> list = curves.all(true, passes::RELMSE, false);
     for (Series& series : list) series.name += ", mean";
-    for (Series single : curves.all(false, relmseOf, false)) {
+    for (Series single : curves.all(false, passes::RELMSE, false)) {
         single.mark = Series::Mark::Dashed;
         single.low.clear();
         single.high.clear();

@@ -151,21 +151,20 @@ Json floorsOf(const Correlation& correlation, const std::filesystem::path& direc
             deviation.push_back(glm::sqrt(glm::max(value, glm::dvec3(0)))); // an estimate of 0 may fall below
         }
         image::write(directory / (name + ".exr"), exr, {{"scene", correlation.scene}, {"method", curve.method.name}});
-        const auto png = [&](const std::string& file, const std::vector<glm::dvec3>& values) {
-            image::write(directory / file, shown(values, correlation.width, correlation.height), {});
-            return pngAddress(files::read(directory / file));
+        const auto png = [&](const std::vector<glm::dvec3>& values) {
+            return image::tonemappedPng(shown(values, correlation.width, correlation.height), {});
         };
-        const std::string scratch = name + "-picture.png";
+        const std::vector<std::byte> map = png(deviation);
+        files::writeAtomically(directory / (name + ".png"), map);
         list.push_back(
             {{"method", curve.method.name},
              {"file", name},
              {"maps",
-              {{{"png", png(name + ".png", deviation)},
+              {{{"png", pngAddress(map)},
                 {"caption", "√P, scaled so that 98% of the pixels lie below half brightness."}},
-               {{"png", png(scratch, curve.mean)},
+               {{"png", pngAddress(png(curve.mean))},
                 {"caption",
                  "The picture itself, likewise: the mean of all frames, without what is seen directly."}}}}});
-        std::filesystem::remove(directory / scratch);
     }
     return list;
 }

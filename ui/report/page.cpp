@@ -44,15 +44,6 @@ bool isNumber(const std::string& text)
            text.find_first_of("0123456789") != std::string::npos;
 }
 
-std::string shellQuoted(const std::string& argument)
-{
-    const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
-    std::string result = "'";
-    for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
 } // namespace
 
 std::string fillPage(const std::string& html, const Json& values)

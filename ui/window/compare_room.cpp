@@ -86,17 +86,15 @@ void compare(WindowState& state, bool on)
 void drawCompareRoom(WindowState& state)
 {
     bool two = state.order.rival.has_value();
-    if (ImGui::Checkbox("compare with B (C)", &two)) compare(state, two);
-    remember(state.places, "compare");
-    explain("A second set of settings in the same scene. Both get the same time: the younger renders alone until it "
-            "has caught up.");
+    if (checkbox(state.places, "compare with B (C)", "compare", two,
+                 "A second set of settings in the same scene. Both get the same time: the younger renders alone until "
+                 "it has caught up."))
+        compare(state, two);
     if (state.order.rival) {
         ImGui::SameLine();
-        int editing = state.editing;
         ImGui::TextColored(colors::GRAY, "settings of");
         ImGui::SameLine();
-        if (choose(state.places, "edit", editing, {"A", "B"}, "Whose settings the panel shows and changes."))
-            state.editing = Side(editing);
+        choose(state.places, "edit", state.editing, {"A", "B"}, "Whose settings the panel shows and changes.");
     }
     const bool reference = state.pictures.reference != nullptr;
     ImGui::AlignTextToFramePadding();
@@ -116,19 +114,14 @@ void drawCompareRoom(WindowState& state)
         ImGui::SameLine();
         state.requests.dropReference |= button(state.places, "Drop it", "drop-reference", "No reference any more.");
     }
-    ImGui::Checkbox("error (P)", &state.plots);
-    remember(state.places, "plots");
-    explain("Error against the reference over time, for A and B.");
+    checkbox(state.places, "error (P)", "plots", state.plots, "Error against the reference over time, for A and B.");
     ImGui::SameLine();
-    ImGui::Checkbox("correlation (K)", &state.correlation);
-    remember(state.places, "correlation");
-    explain("Autocovariance of successive frames of A and B, measured beside the pictures on a small picture.");
+    checkbox(state.places, "correlation (K)", "correlation", state.correlation,
+             "Autocovariance of successive frames of A and B, measured beside the pictures on a small picture.");
     if (!two && !reference) return;
     View& view = state.view;
     const auto pick = [&](const char* name, Source& source, const char* doc) {
-        int index = int(source);
-        if (choose(state.places, name, index, {"A", "B", "reference"}, doc))
-            source = Source(index), view.flipped = false;
+        if (choose(state.places, name, source, {"A", "B", "reference"}, doc)) view.flipped = false;
     };
     pick("first", view.first, "The picture that is shown; left of the line in a split.");
     ImGui::SameLine();
@@ -136,12 +129,9 @@ void drawCompareRoom(WindowState& state)
     pick("second", view.second, "What it is compared with; right of the line in a split.");
     ImGui::SameLine();
     ImGui::TextColored(colors::GRAY, "beside it");
-    int layout = int(view.layout);
-    if (choose(state.places, "layout", layout, {"one (Tab flips)", "split", "difference"},
-               "One: Tab flips between the two. Split: drag the line. Difference: its absolute value per channel; "
-               "exposure "
-               "makes it brighter."))
-        view.layout = Layout(layout);
+    choose(state.places, "layout", view.layout, {"one (Tab flips)", "split", "difference"},
+           "One: Tab flips between the two. Split: drag the line. Difference: its absolute value per channel; exposure "
+           "makes it brighter.");
 }
 
 bool drawOverPicture(WindowState& state, ImVec2 low, ImVec2 high)

@@ -18,31 +18,16 @@ constexpr int BACKGROUND = 10; // nice: after the renderer, where both are on th
 constexpr std::chrono::seconds QUIET[] = {std::chrono::seconds(2), std::chrono::seconds(8)};
 constexpr uint64_t BUFFER_BYTES = 1024; // larger than every uniform block
 
-gpu::Usage usageOf(gpu::Binding::Kind kind)
+gpu::ComputePipelineDescriptor descriptorOf(const passes::StageList::value_type& stage)
 {
-    switch (kind) {
-    case gpu::Binding::Kind::Uniform: return gpu::Usage::Uniform;
-    case gpu::Binding::Kind::Table: return gpu::Usage::Table;
-    case gpu::Binding::Kind::Storage: break;
-    }
-    return gpu::Usage::Storage;
+    return {.label = stage.first, .constants = passes::constants(stage.second)};
 }
 
 } // namespace
 
 CompileAhead::CompileAhead(std::function<gpu::Device()> open, std::function<void()> wake)
-    : open_(std::move(open)), wake_(std::move(wake)), thread_([this] { run(); })
+    : open_(std::move(open)), wake_(std::move(wake)), thread_([this](const std::stop_token& stop) { run(stop); })
 {
-}
-
-CompileAhead::~CompileAhead()
-{
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
 }
 
 std::string CompileAhead::keyOf(const Stage& stage)
@@ -78,17 +63,15 @@ void CompileAhead::forget()
 
 bool CompileAhead::ready(const Stages& stages)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        std::deque<Stage> missing;
-        for (const Stage& stage : stages) {
-            const Result& result = results_[keyOf(stage)];
-            if (!result.failure.empty()) throw Error("{}", result.failure);
-            if (!result.done) missing.push_back(stage);
-        }
-        if (missing.empty()) return true;
-        wanted_ = std::move(missing);
+    const std::lock_guard lock(mutex_);
+    std::deque<Stage> missing;
+    for (const Stage& stage : stages) {
+        const Result& result = results_[keyOf(stage)];
+        if (!result.failure.empty()) throw Error("{}", result.failure);
+        if (!result.done) missing.push_back(stage);
     }
+    if (missing.empty()) return true;
+    wanted_ = std::move(missing);
     changed_.notify_all();
     return false;
 }
@@ -108,10 +91,8 @@ void CompileAhead::learn(const Stages& stages)
 
 void CompileAhead::later(const Stages& stages)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        putOff_.assign(stages.begin(), stages.end());
-    }
+    const std::lock_guard lock(mutex_);
+    putOff_.assign(stages.begin(), stages.end());
     changed_.notify_all();
 }
 
@@ -123,21 +104,21 @@ std::string CompileAhead::activity() const
     return fmt::format("Compiling {}, {} more to go", current_, left);
 }
 
-void CompileAhead::run()
+void CompileAhead::run(const std::stop_token& stop)
 {
     [[maybe_unused]] const int niceness = nice(BACKGROUND); // of this thread, on Linux
     std::unique_lock lock(mutex_);
-    const auto due = [&] { return stop_ || (device_ && (!wanted_.empty() || !putOff_.empty())); };
+    const auto due = [&] { return device_ && (!wanted_.empty() || !putOff_.empty()); };
     while (true) {
         // Compilers of CPU drivers, here and wherever a new pipeline first ran, leave hundreds of MB behind.
         for (const std::chrono::seconds quiet : QUIET) {
-            if (changed_.wait_for(lock, quiet, due)) break;
+            if (changed_.wait_for(lock, stop, quiet, due) || stop.stop_requested()) break;
             lock.unlock();
             memory::giveBackFreed();
             lock.lock();
         }
-        changed_.wait(lock, due);
-        if (stop_) return;
+        changed_.wait(lock, stop, due);
+        if (stop.stop_requested()) return;
         const bool urgent = !wanted_.empty();
         std::deque<Stage>& list = urgent ? wanted_ : putOff_;
         const Stage stage = std::move(list.front());
@@ -149,7 +130,8 @@ void CompileAhead::run()
             std::string failure;
             lock.unlock();
             try {
-                pipeline = compile(*device_, stage);
+                if (device_->adapter().kind == "cpu") runOnce(stage);
+                pipeline = device_->createComputePipeline(descriptorOf(stage));
             } catch (const Error& error) {
                 failure = error.what();
             }
@@ -167,24 +149,17 @@ void CompileAhead::run()
     }
 }
 
-gpu::ComputePipeline CompileAhead::compile(gpu::Device& device, const Stage& stage)
-{
-    if (device.adapter().kind == "cpu") runOnce(stage);
-    return device.createComputePipeline({.label = stage.first, .constants = passes::constants(stage.second)});
-}
-
 // On a picture without pixels.
 void CompileAhead::runOnce(const Stage& stage)
 {
     if (!own_) own_ = open_();
     gpu::Device& device = *own_;
-    const gpu::ComputePipeline pipeline =
-        device.createComputePipeline({.label = stage.first, .constants = passes::constants(stage.second)});
+    const gpu::ComputePipeline pipeline = device.createComputePipeline(descriptorOf(stage));
     std::vector<gpu::Buffer> buffers;
     std::vector<std::vector<std::pair<std::string, size_t>>> sets;
     for (const gpu::Binding& binding : pipeline.bindings()) {
         buffers.push_back(
-            device.createBuffer({.label = binding.name, .size = BUFFER_BYTES, .usage = usageOf(binding.kind)}));
+            device.createBuffer({.label = binding.name, .size = BUFFER_BYTES, .usage = gpu::usageFor(binding.kind)}));
         sets.resize(std::max<size_t>(sets.size(), binding.set + 1));
         sets[binding.set].emplace_back(binding.name, buffers.size() - 1);
     }

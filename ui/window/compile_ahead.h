@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/gpu/gpu.h"
-#include "passes/pipeline_pool.h"
+#include "passes/frame_plan.h"
 
 namespace ui
 {
@@ -22,13 +22,11 @@ namespace ui
 class CompileAhead
 {
   public:
-    using Stages = std::vector<std::pair<std::string, passes::Variant>>; // as passes::Renderer::stagesFor lists them
+    using Stages = passes::StageList;
 
     // `open` opens the device of its own; `wake` is called from the thread when a wanted list is done.
+    // Ends after the stage at hand.
     CompileAhead(std::function<gpu::Device()> open, std::function<void()> wake);
-    ~CompileAhead(); // ends after the stage at hand
-    CompileAhead(const CompileAhead&) = delete;
-    CompileAhead& operator=(const CompileAhead&) = delete;
 
     // Compiles for this device from now on; null: for none. What was made for another is gone when this returns.
     void serve(gpu::Device* device);
@@ -42,29 +40,27 @@ class CompileAhead
     std::string activity() const; // "Compiling temporal, 3 to go"; empty: nothing to do
 
   private:
-    using Stage = std::pair<std::string, passes::Variant>;
+    using Stage = Stages::value_type;
     struct Result {
         bool done = false;
         std::string failure;
     };
     static std::string keyOf(const Stage& stage);
-    void run();
-    gpu::ComputePipeline compile(gpu::Device& device, const Stage& stage);
+    void run(const std::stop_token& stop);
     void runOnce(const Stage& stage);
     void stopWork(std::unique_lock<std::mutex>& lock);
 
     std::function<gpu::Device()> open_;
     std::function<void()> wake_;
     mutable std::mutex mutex_; // of all up to thread_, but own_
-    std::condition_variable changed_;
+    std::condition_variable_any changed_;
     gpu::Device* device_ = nullptr;
     std::deque<Stage> wanted_, putOff_;
     std::map<std::string, Result> results_;
     std::vector<std::pair<Stage, gpu::ComputePipeline>> made_;
-    std::string current_; // what is being compiled
-    bool stop_ = false;
+    std::string current_;            // what is being compiled
     std::optional<gpu::Device> own_; // the thread's
-    std::thread thread_;             // last: starts when all else is there
+    std::jthread thread_;            // last: starts when all else is there
 };
 
 } // namespace ui

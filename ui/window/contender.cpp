@@ -1,9 +1,9 @@
 #include "ui/window/contender.h"
 
-#include "passes/camera_choice.h"
+#include "engine/base/clock.h"
+#include "passes/camera_path.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace ui
 {
@@ -11,22 +11,8 @@ namespace ui
 namespace
 {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr uint32_t MOVING_DIVISOR = 2;       // of width and height while the camera moves
 constexpr double PUBLISH_SECONDS = 1.0 / 60; // no more pictures than a screen shows
-
-double secondsSince(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
-{
-    uint64_t sum = 0;
-    for (const auto& [name, count] : counts) sum += count;
-    return sum;
-}
 
 } // namespace
 
@@ -47,11 +33,10 @@ passes::Settings settingsOf(const Order& order, Side side)
     return settings;
 }
 
-std::vector<std::pair<std::string, passes::Variant>> stagesFor(const Order& order, Side side,
-                                                               const passes::Renderer& renderer)
+passes::StageList stagesFor(const Order& order, Side side, const passes::Renderer& renderer)
 {
     const passes::Settings settings = settingsOf(order, side);
-    auto stages = passes::stagesOf(renderer.scene(), settings, order.moving);
+    passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, order.moving);
     const passes::Variant variant = stages.front().second;
     const bool resamples = settings.method != passes::Method::Pt;
     if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);
@@ -123,7 +108,7 @@ void Contender::render(bool once)
     while (!once && secondsSince(start) < PUBLISH_SECONDS);
     const double seconds = secondsSince(start);
     seconds_ += seconds;
-    const uint64_t rays = sumOf(renderer_->stats().rays);
+    const uint64_t rays = passes::sumOf(renderer_->stats().rays);
     frameMilliseconds_ = 1000 * seconds / double(frames() - before);
     raysPerSecond_ = double(rays - std::min(rays, raysBefore_)) / seconds;
     raysBefore_ = rays;

@@ -10,8 +10,7 @@ namespace ui
 {
 
 // What a side of the order compiles, those stages that inspect it included.
-std::vector<std::pair<std::string, passes::Variant>> stagesFor(const Order& order, Side side,
-                                                               const passes::Renderer& renderer);
+passes::StageList stagesFor(const Order& order, Side side, const passes::Renderer& renderer);
 
 class Contender
 {

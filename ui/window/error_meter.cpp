@@ -21,47 +21,26 @@ bool sameReference(const ReferencePointer& a, const ReferencePointer& b)
 
 } // namespace
 
-ErrorMeter::ErrorMeter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
-
-ErrorMeter::~ErrorMeter()
+ErrorMeter::ErrorMeter(std::function<void()> wake)
+    : wake_(std::move(wake)), thread_([this](const std::stop_token& stop) { run(stop); })
 {
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
 }
 
 void ErrorMeter::offer(const Pictures& pictures)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        offered_ = pictures;
-        for (const Side side : {A, B}) {
-            Track& track = tracks_[side];
-            const ShotPointer& shot = pictures.sides[side];
-            const bool same = shot && shot->run == track.run && sameReference(track.reference, pictures.reference);
-            if (same)
-                track.reference = pictures.reference;
-            else
-                track = {.run = shot ? shot->run : 0, .reference = pictures.reference};
-        }
-        if (!pictures.reference) complaint_.clear();
+    const std::lock_guard lock(mutex_);
+    offered_ = pictures;
+    for (const Side side : {A, B}) {
+        Track& track = tracks_[side];
+        const ShotPointer& shot = pictures.sides[side];
+        const bool same = shot && shot->run == track.run && sameReference(track.reference, pictures.reference);
+        if (same)
+            track.reference = pictures.reference;
+        else
+            track = {.run = shot ? shot->run : 0, .reference = pictures.reference};
     }
+    if (!pictures.reference) complaint_.clear();
     changed_.notify_all();
-}
-
-ErrorCurve ErrorMeter::curve(Side side) const
-{
-    const std::lock_guard lock(mutex_);
-    return tracks_[side].curve;
-}
-
-std::string ErrorMeter::complaint() const
-{
-    const std::lock_guard lock(mutex_);
-    return complaint_;
 }
 
 bool ErrorMeter::due(Side side) const
@@ -73,13 +52,13 @@ bool ErrorMeter::due(Side side) const
     return shot != track.tried && (track.curve.empty() || shot->seconds >= APART * track.curve.back().seconds);
 }
 
-void ErrorMeter::run()
+void ErrorMeter::run(const std::stop_token& stop)
 {
     [[maybe_unused]] const int niceness = nice(BACKGROUND); // of this thread, on Linux
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [&] { return stop_ || due(A) || due(B); });
-        if (stop_) return;
+        changed_.wait(lock, stop, [&] { return due(A) || due(B); });
+        if (stop.stop_requested()) return;
         for (const Side side : {A, B})
             if (due(side)) measure(lock, side);
     }

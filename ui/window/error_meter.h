@@ -25,19 +25,22 @@ class ErrorMeter
 {
   public:
     explicit ErrorMeter(std::function<void()> wake);
-    ~ErrorMeter();
-    ErrorMeter(const ErrorMeter&) = delete;
-    ErrorMeter& operator=(const ErrorMeter&) = delete;
 
     // Every new reference and every new film starts a new curve; a reference that converges goes on being the same.
     // Points are a few percent of their time apart, and the last is measured again whenever the reference has got
     // better; pictures of a moving camera are not measured.
     void offer(const Pictures& pictures);
-    ErrorCurve curve(Side side) const;
-    std::string complaint() const; // why nothing can be measured; empty: nothing is wrong
+    ErrorCurve curve(Side side) const { return locked(tracks_[side].curve); }
+    std::string complaint() const { return locked(complaint_); } // why nothing can be measured; empty: nothing is wrong
 
   private:
-    void run();
+    template <class Value>
+    Value locked(const Value& value) const
+    {
+        const std::lock_guard lock(mutex_);
+        return value;
+    }
+    void run(const std::stop_token& stop);
     bool due(Side side) const;
     void measure(std::unique_lock<std::mutex>& lock, Side side);
 
@@ -50,12 +53,11 @@ class ErrorMeter
     };
     std::function<void()> wake_;
     mutable std::mutex mutex_; // of all up to thread_
-    std::condition_variable changed_;
+    std::condition_variable_any changed_;
     Pictures offered_;
     Track tracks_[SIDES];
     std::string complaint_;
-    bool stop_ = false;
-    std::thread thread_; // last: starts when all else is there
+    std::jthread thread_; // last: starts when all else is there
 };
 
 } // namespace ui

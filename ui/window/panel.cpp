@@ -5,6 +5,7 @@
 #include "ui/window/compare_room.h"
 #include "ui/window/pixel_room.h"
 
+#include <cinttypes>
 #include <filesystem>
 #include <string_view>
 
@@ -23,11 +24,8 @@ void drawBadge(const ShotPointer& shot)
         ImGui::TextColored(GRAY, "No picture yet");
         return;
     }
-    uint64_t lost = 0;
-    for (const auto& [stage, count] : shot->stats.nonFinite) lost += count;
-    if (lost > 0) {
-        ImGui::TextColored(AMBER, "BIASED: %llu values were not finite and count as 0",
-                           static_cast<unsigned long long>(lost));
+    if (const uint64_t lost = passes::sumOf(shot->stats.nonFinite); lost > 0) {
+        sentence(AMBER, fmt::format("BIASED: {} values were not finite and count as 0", lost));
         return;
     }
     ImGui::TextColored(GREEN, "UNBIASED for paths of up to %u bounces", shot->order.settings.maxBounces);
@@ -143,8 +141,8 @@ void drawVariant(WindowState& state, const Shot& shot)
 void drawFigures(WindowState& state, const Shot& shot)
 {
     const passes::RenderStats& stats = shot.stats;
-    ImGui::Text("%llu frames in %.1f s, %.1f ms each, %.2f M rays/s", static_cast<unsigned long long>(shot.frames),
-                shot.seconds, shot.frameMilliseconds, shot.raysPerSecond / 1e6);
+    ImGui::Text("%" PRIu64 " frames in %.1f s, %.1f ms each, %.2f M rays/s", shot.frames, shot.seconds,
+                shot.frameMilliseconds, shot.raysPerSecond / 1e6);
     ImGui::Text("%.1f MB, %.0f bytes per pixel, compiled in %.2f s", double(stats.memoryBytes) / 1e6,
                 stats.bytesPerPixel, stats.compileSeconds);
     ImGui::TextColored(GRAY, "%s", shot.adapter.name.c_str());
@@ -170,11 +168,7 @@ void drawPanel(WindowState& state)
     const ShotPointer& shot = state.pictures.sides[state.editing];
     drawBadge(shot);
     drawActivity(state);
-    if (!state.message.empty()) {
-        ImGui::PushTextWrapPos();
-        ImGui::TextColored(AMBER, "%s", state.message.c_str());
-        ImGui::PopTextWrapPos();
-    }
+    if (!state.message.empty()) sentence(AMBER, state.message);
     drawFiles(state);
     drawRun(state);
     ImGui::Separator();

@@ -117,9 +117,7 @@ void drawLegend(const std::vector<LegendWord>& words)
         else
             left = ImGui::GetContentRegionAvail().x;
         left -= width + gap;
-        ImGui::PushTextWrapPos();
-        ImGui::TextColored({word.color.r, word.color.g, word.color.b, 1}, "%s", word.text.c_str());
-        ImGui::PopTextWrapPos();
+        sentence({word.color.r, word.color.g, word.color.b, 1}, word.text);
     }
 }
 
@@ -151,9 +149,8 @@ void drawFalseColorRoom(WindowState& state)
         state.view.reservoir = std::clamp(state.view.reservoir, 0, count - 1);
     }
     drawLegend(state.legend);
-    ImGui::Checkbox("inspect the pixel under the mouse (I)", &state.pixel);
-    remember(state.places, "pixel");
-    explain(
+    checkbox(
+        state.places, "inspect the pixel under the mouse (I)", "pixel", state.pixel,
         "Its color, what its reservoirs hold (sample, target p_hat, weight sum, weight W, confidence), and over the "
         "picture the paths that they hold. It stays when the mouse leaves the picture.");
 }

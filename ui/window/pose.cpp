@@ -49,15 +49,19 @@ Pose poseOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin)
             .yfov = camera.orthographic ? 45 : glm::degrees(camera.yfov)};
 }
 
-nlohmann::ordered_json toCameraPath(const Pose& pose)
+nlohmann::ordered_json toJson(const Pose& pose)
 {
     const auto list = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
-    return {{"keyframes",
-             {{{"frame", 0u},
-               {"position", list(pose.position)},
-               {"target", list(pose.target)},
-               {"up", list(pose.up)},
-               {"yfov", pose.yfov}}}}};
+    return {{"frame", 0u},
+            {"position", list(pose.position)},
+            {"target", list(pose.target)},
+            {"up", list(pose.up)},
+            {"yfov", pose.yfov}};
+}
+
+nlohmann::ordered_json toCameraPath(const Pose& pose)
+{
+    return {{"keyframes", {toJson(pose)}}};
 }
 
 scene::Camera cameraOf(const Pose& pose, const scene::Camera& base, const glm::dvec3& sceneOrigin)

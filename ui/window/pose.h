@@ -21,7 +21,8 @@ struct Pose {
 
 Pose poseOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin);
 
-// {"keyframes": [this one at frame 0]}
+// As a keyframe at frame 0, and as a path: {"keyframes": [this one]}.
+nlohmann::ordered_json toJson(const Pose& pose);
 nlohmann::ordered_json toCameraPath(const Pose& pose);
 
 // The camera that `--camera-path` makes of it, bit by bit.

@@ -4,9 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"
-
-#include <algorithm>
-#include <cstring>
+#include "engine/gpu/vulkan_lists.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -22,27 +20,6 @@ namespace
 
 constexpr uint32_t MIN_IMAGES = 2;
 constexpr VkQueueFlags NEEDED = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-
-template <class T, class Call>
-std::vector<T> listOf(Call&& call)
-{
-    uint32_t count = 0;
-    call(&count, nullptr);
-    std::vector<T> list(count);
-    call(&count, list.data());
-    list.resize(count);
-    return list;
-}
-
-bool hasSwapchain(VkPhysicalDevice device)
-{
-    const auto extensions = listOf<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* list) {
-        vkEnumerateDeviceExtensionProperties(device, nullptr, count, list);
-    });
-    return std::ranges::any_of(extensions, [](const VkExtensionProperties& extension) {
-        return std::strcmp(extension.extensionName, VK_KHR_SWAPCHAIN_EXTENSION_NAME) == 0;
-    });
-}
 
 // Discrete before integrated before the rest.
 int rankOf(VkPhysicalDeviceType type)
@@ -91,15 +68,15 @@ void Presenter::createInstance()
 void Presenter::chooseDevice()
 {
     int best = -1;
-    for (const VkPhysicalDevice device : listOf<VkPhysicalDevice>(
-             [&](uint32_t*count, VkPhysicalDevice*list) { vkEnumeratePhysicalDevices(instance_, count, list); })) {
+    for (const VkPhysicalDevice device : gpu::listOf<VkPhysicalDevice>(vkEnumeratePhysicalDevices, instance_)) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(device, &properties);
-        if (!hasSwapchain(device) || rankOf(properties.deviceType) <= best) continue;
+        const auto extensions =
+            gpu::listOf<VkExtensionProperties>(vkEnumerateDeviceExtensionProperties, device, nullptr);
+        if (!gpu::holds(extensions, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) continue;
+        if (rankOf(properties.deviceType) <= best) continue;
         if (properties.apiVersion < VK_API_VERSION_1_2) continue; // as shaders are compiled for
-        const auto families = listOf<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* list) {
-            vkGetPhysicalDeviceQueueFamilyProperties(device, count, list);
-        });
+        const auto families = gpu::listOf<VkQueueFamilyProperties>(vkGetPhysicalDeviceQueueFamilyProperties, device);
         for (uint32_t family = 0; family < families.size(); ++family) {
             VkBool32 presents = VK_FALSE;
             vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface_, &presents);

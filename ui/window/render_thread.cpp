@@ -1,7 +1,7 @@
 #include "ui/window/render_thread.h"
 
 #include "engine/base/error.h"
-#include "passes/camera_choice.h"
+#include "passes/camera_path.h"
 #include "ui/cli/scene_source.h"
 
 #include <chrono>
@@ -31,57 +31,22 @@ RenderThread::RenderThread(std::function<gpu::Device()> open, const std::string&
       })
 {
     if (!shaders.empty()) watcher_.emplace(shaders);
-    thread_ = std::thread([this] { run(); });
-}
-
-RenderThread::~RenderThread()
-{
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 void RenderThread::order(const Order& order)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        if (order == wanted_) return;
-        wanted_ = order;
-        news_ = true;
-    }
+    const std::lock_guard lock(mutex_);
+    if (order == wanted_) return;
+    wanted_ = order;
+    news_ = true;
     changed_.notify_all();
-}
-
-ShotPointer RenderThread::shot(Side side) const
-{
-    const std::lock_guard lock(mutex_);
-    return shots_[side];
-}
-
-std::shared_ptr<const SceneFacts> RenderThread::scene() const
-{
-    const std::lock_guard lock(mutex_);
-    return sceneFacts_;
-}
-
-std::shared_ptr<const Findings> RenderThread::findings() const
-{
-    const std::lock_guard lock(mutex_);
-    return findings_;
 }
 
 std::string RenderThread::activity() const
 {
     const std::lock_guard lock(mutex_);
     return activity_.empty() && pending_ ? compiler_.activity() : activity_;
-}
-
-std::string RenderThread::ahead() const
-{
-    return compiler_.activity();
 }
 
 std::optional<std::string> RenderThread::takeFailure(Order& back)
@@ -113,7 +78,7 @@ void RenderThread::fail(const std::string& sentence)
     wake_();
 }
 
-void RenderThread::run()
+void RenderThread::run(const std::stop_token& stop)
 {
     // On Linux a thread's own; the threads of a CPU driver inherit it. Not being allowed to is no failure.
     [[maybe_unused]] const int niceness = nice(BACKGROUND);
@@ -124,13 +89,13 @@ void RenderThread::run()
             const auto due = [&] {
                 const bool idle =
                     !sides_[A] || (running_.paused && running_.steps >= wanted_.steps && !studies_.busy());
-                return stop_ || news_ || !idle;
+                return news_ || !idle;
             };
             if (watcher_)
-                changed_.wait_for(lock, WATCH_INTERVAL, due);
+                changed_.wait_for(lock, stop, WATCH_INTERVAL, due);
             else
-                changed_.wait(lock, due);
-            if (stop_) break;
+                changed_.wait(lock, stop, due);
+            if (stop.stop_requested()) break;
             order = wanted_;
             news_ = false;
         }
@@ -208,14 +173,14 @@ void RenderThread::load(const Order& order)
         if (percent != shown) say(fmt::format("Building the BVH: {}%", shown = percent));
         if (percent >= 100) say("Compiling");
     };
-    auto renderer =
-        std::make_unique<passes::Renderer>(*device_, *world, settingsOf(order, A), progress, scene::FeatureSet::Needed,
-                                           1, sides_[A] ? sides_[A]->renderer().pipelines() : nullptr);
+    const passes::Settings settings = settingsOf(order, A);
+    auto renderer = std::make_unique<passes::Renderer>(*device_, *world, settings, progress, scene::FeatureSet::Needed,
+                                                       1, sides_[A] ? sides_[A]->renderer().pipelines() : nullptr);
     studies_.clear();
     sides_[B].reset(); // of the old scene
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
-    compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), settingsOf(order, A)));
+    compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), {&settings, 1}));
     const SceneFacts facts{order.scene, scene_->cameras, scene_->origin, scene_->warnings};
     const std::lock_guard lock(mutex_);
     sceneFacts_ = std::make_shared<const SceneFacts>(facts);
@@ -285,25 +250,21 @@ void RenderThread::study(const Order& order)
 // What one more click would ask for, the likeliest first.
 void RenderThread::compileAhead(const Order& order)
 {
-    CompileAhead::Stages stages;
-    const auto add = [&](const passes::Settings& settings) {
-        for (auto& stage : passes::stagesOf(sides_[A]->renderer().scene(), settings))
-            stages.push_back(std::move(stage));
-    };
     const passes::Settings settings = settingsOf(order, A);
-    stages = passes::stagesOf(sides_[A]->renderer().scene(), settings, true); // a moved camera
+    std::vector<passes::Settings> others;
     using passes::Method, passes::Shift;
     for (const Method method : {Method::RgbRestir, Method::RestirPt, Method::Pt}) {
-        passes::Settings other = settings;
-        other.method = method;
-        add(other);
+        others.push_back(settings);
+        others.back().method = method;
     }
     for (const Shift shift : {Shift::Hybrid, Shift::Reconnection, Shift::Replay}) {
-        passes::Settings other = settings;
+        passes::Settings& other = others.emplace_back(settings);
         if (other.method == Method::Pt) other.method = Method::RgbRestir;
         other.shift = shift;
-        add(other);
     }
+    const passes::SceneOnDevice& scene = sides_[A]->renderer().scene();
+    passes::StageList stages = passes::stagesOf(scene, {&settings, 1}, true); // a moved camera
+    std::ranges::move(passes::stagesOf(scene, others), std::back_inserter(stages));
     compiler_.later(stages);
 }
 
@@ -316,14 +277,13 @@ void RenderThread::reloadShaders()
     }
     if (!reload_) return;
     try {
-        CompileAhead::Stages stages;
+        std::vector<passes::Settings> settings;
         for (const std::unique_ptr<Contender>& side : sides_)
-            if (side)
-                for (auto& stage : passes::stagesOf(side->renderer().scene(), side->renderer().settings()))
-                    stages.push_back(stage);
-        if (!compiler_.ready(stages)) return;
+            if (side) settings.push_back(side->renderer().settings());
+        passes::Renderer& renderer = sides_[A]->renderer();
+        if (!compiler_.ready(passes::stagesOf(renderer.scene(), settings))) return;
         reload_ = false;
-        passes::PipelinePool& pool = *sides_[A]->renderer().pipelines();
+        passes::PipelinePool& pool = *renderer.pipelines();
         pool.clear();
         compiler_.handOver(pool);
         for (const std::unique_ptr<Contender>& side : sides_)

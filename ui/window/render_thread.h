@@ -23,24 +23,29 @@ class RenderThread
 {
   public:
     // `open` gives a device, to the thread itself and to the one that compiles ahead. `shaders`: a directory to watch
-    // for changes, empty: none. `wake` is called from the thread whenever there is something new.
+    // for changes, empty: none. `wake` is called from the thread whenever there is something new. Ends after the
+    // current frame.
     RenderThread(std::function<gpu::Device()> open, const std::string& shaders, std::function<void()> wake);
-    ~RenderThread(); // ends after the current frame
-    RenderThread(const RenderThread&) = delete;
-    RenderThread& operator=(const RenderThread&) = delete;
 
     void order(const Order& order);
 
-    ShotPointer shot(Side side) const; // the latest; null before the first
-    std::shared_ptr<const SceneFacts> scene() const;
-    std::shared_ptr<const Findings> findings() const; // of the studies; never null
+    ShotPointer shot(Side side) const { return locked(shots_[side]); } // the latest; null before the first
+    std::shared_ptr<const SceneFacts> scene() const { return locked(sceneFacts_); }
+    std::shared_ptr<const Findings> findings() const { return locked(findings_); } // of the studies; never null
     std::string activity() const; // what the order waits for, "Building the BVH: 40%"; empty: nothing
-    std::string ahead() const;    // what is compiled for settings that nobody has asked for yet; empty: nothing
+    // What is compiled for settings that nobody has asked for yet; empty: nothing.
+    std::string ahead() const { return compiler_.activity(); }
     // Why the last order could not be followed, once; `back` becomes what goes on instead.
     std::optional<std::string> takeFailure(Order& back);
 
   private:
-    void run();
+    template <class Value>
+    Value locked(const Value& value) const
+    {
+        const std::lock_guard lock(mutex_);
+        return value;
+    }
+    void run(const std::stop_token& stop);
     void follow(const Order& order);
     void load(const Order& order);
     bool sameWorld(const Order& order) const;
@@ -59,9 +64,9 @@ class RenderThread
     std::function<void()> wake_;
 
     mutable std::mutex mutex_; // of all up to compiler_
-    std::condition_variable changed_;
+    std::condition_variable_any changed_;
     Order wanted_;
-    bool news_ = false, stop_ = false;
+    bool news_ = false;
     bool pending_ = false; // a side goes on with its old settings until the new ones are compiled
     ShotPointer shots_[SIDES];
     std::shared_ptr<const SceneFacts> sceneFacts_;
@@ -79,7 +84,7 @@ class RenderThread
     std::unique_ptr<Contender> sides_[SIDES];
     Studies studies_; // of the sides' scene and device
     Order running_;
-    std::thread thread_; // last: starts when all else is there
+    std::jthread thread_; // last: starts when all else is there
 };
 
 } // namespace ui

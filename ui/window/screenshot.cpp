@@ -23,18 +23,6 @@ std::string freeName()
     }
 }
 
-// For a POSIX shell.
-std::string quoted(const std::string& word)
-{
-    if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=") ==
-            std::string::npos &&
-        !word.empty())
-        return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 } // namespace
 
 std::string takeScreenshot(const Shot& shot)
@@ -60,9 +48,9 @@ std::string takeScreenshot(const Shot& shot)
     image::write(name + ".exr", shot.picture, metadataOf(report));
 
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
-                                   quoted(shot.order.scene), name, name, quoted(shot.adapter.name));
-    if (!shot.order.assetRoot.empty()) line += " --asset-root " + quoted(shot.order.assetRoot);
-    for (const auto& [option, value] : sourceOf(shot.order).toText()) line += " --" + option + " " + quoted(value);
+                                   shellQuoted(shot.order.scene), name, name, shellQuoted(shot.adapter.name));
+    if (!shot.order.assetRoot.empty()) line += " --asset-root " + shellQuoted(shot.order.assetRoot);
+    for (const auto& [option, value] : sourceOf(shot.order).toText()) line += " --" + option + " " + shellQuoted(value);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

@@ -1,6 +1,6 @@
 #include "ui/window/studies.h"
 
-#include "passes/camera_choice.h"
+#include "passes/camera_path.h"
 #include "passes/experiments/autocovariance.h"
 #include "passes/experiments/reference.h"
 
@@ -10,76 +10,45 @@ namespace ui
 namespace
 {
 
-Side sideOf(int kind, int kindOfA)
+uint64_t orderedOf(const StudyKind& kind, Side side, const Order& order)
 {
-    return kind == kindOfA ? A : B;
+    return side == A || (kind.eachSide && order.rival) ? kind.ordered(order.studies) : 0;
+}
+
+bool sameSubject(const StudyKind& kind, Side side, const Order& a, const Order& b)
+{
+    const auto settings = [&](const Order& order) {
+        return kind.ofPicture ? passes::referenceSettings(settingsOf(order, side)) : settingsOf(order, side);
+    };
+    return a.pose == b.pose && sourceOf(a) == sourceOf(b) && a.restarts == b.restarts &&
+           orderedOf(kind, side, a) == orderedOf(kind, side, b) && settings(a) == settings(b);
 }
 
 } // namespace
 
-bool Studies::wanted(const Order& order, Kind kind)
-{
-    const StudyOrder& studies = order.studies;
-    switch (kind) {
-    case Reference: return studies.reference;
-    case CorrelationA: return studies.correlation;
-    case CorrelationB: return studies.correlation && order.rival;
-    case FloorA: return studies.floor;
-    case FloorB: return studies.floor && order.rival;
-    case Saved: return studies.savings > 0;
-    case KINDS: break;
-    }
-    return false;
-}
-
-bool Studies::sameSubject(const Order& a, const Order& b, Kind kind)
-{
-    if (a.pose != b.pose || sourceOf(a) != sourceOf(b) || a.restarts != b.restarts) return false;
-    const Side side = kind == CorrelationB || kind == FloorB ? B : A;
-    passes::Settings one = settingsOf(a, side), other = settingsOf(b, side);
-    if (kind == Reference) one = passes::referenceSettings(one), other = passes::referenceSettings(other);
-    return one == other && (kind != Saved || a.studies.savings == b.studies.savings);
-}
-
-void Studies::forget(Kind kind)
-{
-    switch (kind) {
-    case Reference: findings_.reference.reset(); break;
-    case CorrelationA:
-    case CorrelationB: findings_.curves[sideOf(kind, CorrelationA)].reset(); break;
-    case FloorA:
-    case FloorB: findings_.floors[sideOf(kind, FloorA)].reset(); break;
-    case Saved: findings_.savings.reset(); break;
-    case KINDS: break;
-    }
-}
-
 void Studies::clear()
 {
-    for (int kind = 0; kind < KINDS; ++kind) {
-        entries_[kind] = {};
-        forget(Kind(kind));
-    }
+    for (Entry& entry : entries_) entry = {};
+    findings_ = {};
 }
 
-Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& like)
+passes::StageList Studies::stagesFor(const Order& order, const passes::Renderer& like)
 {
-    Stages stages;
-    const auto add = [&](const passes::Settings& settings) {
-        for (auto& stage : passes::stagesOf(like.scene(), settings)) stages.push_back(std::move(stage));
-    };
+    std::vector<passes::Settings> list;
     passes::Settings plain = settingsOf(order, A);
     plain.method = passes::Method::Pt;
-    if (order.studies.reference || order.studies.correlation || order.studies.floor) add(plain);
-    if (order.studies.correlation || order.studies.floor) add(passes::emissionSettings(plain));
+    if (order.studies.reference || order.studies.correlation || order.studies.floor) list.push_back(plain);
+    if (order.studies.correlation || order.studies.floor) list.push_back(passes::emissionSettings(plain));
     for (const Side side : {A, B}) {
-        passes::Settings settings = settingsOf(order, side);
+        const passes::Settings settings = settingsOf(order, side);
         if (settings.method == passes::Method::Pt || (side == B && !order.rival)) continue;
-        if (order.studies.correlation) add(settings);
-        if (order.studies.correlation || order.studies.floor) add(passes::lawSettings(settings));
+        if (order.studies.correlation) list.push_back(settings);
+        if (order.studies.correlation || order.studies.floor) list.push_back(passes::lawSettings(settings));
     }
+    passes::StageList stages = passes::stagesOf(like.scene(), list);
     if (order.studies.savings > 0) {
-        for (const auto& [name, needed] : passes::stagesOf(like.scene(), settingsOf(order, A), true))
+        const passes::Settings settings = settingsOf(order, A);
+        for (const auto& [name, needed] : passes::stagesOf(like.scene(), {&settings, 1}, true))
             stages.emplace_back(name, passes::withAllFeatures(needed));
     }
     return stages;
@@ -88,34 +57,23 @@ Studies::Stages Studies::stagesFor(const Order& order, const passes::Renderer& l
 bool Studies::follow(const Order& order, passes::Renderer& like, const scene::Scene& scene)
 {
     bool changed = false;
-    for (int i = 0; i < KINDS; ++i) {
-        const Kind kind = Kind(i);
-        Entry& entry = entries_[kind];
-        const bool want = wanted(order, kind);
-        if (entry.ordered && want && sameSubject(entry.of, order, kind)) continue;
-        if (!entry.ordered && !want) continue;
+    for (size_t i = 0; i < STUDIES; ++i) {
+        const StudyKind& kind = STUDY_KINDS[i / SIDES];
+        const Side side = Side(i % SIDES);
+        Entry& entry = entries_[i];
+        const bool want = orderedOf(kind, side, order) > 0;
+        if (entry.of ? want && sameSubject(kind, side, *entry.of, order) : !want) continue;
         entry = {};
-        forget(kind);
+        kind.forget(findings_, side);
         changed = true;
         if (!want) continue;
-        const Side side = kind == CorrelationB || kind == FloorB ? B : A;
         const scene::Camera& base = scene.cameras[passes::chooseCamera(scene, order.settings.camera)];
-        const Subject subject{.like = like,
-                              .scene = scene,
-                              .camera = order.pose ? cameraOf(*order.pose, base, scene.origin) : base,
-                              .settings = settingsOf(order, side),
-                              .side = side};
-        entry.ordered = true;
         entry.of = order;
-        switch (kind) {
-        case Reference: entry.study = makeReferenceStudy(subject); break;
-        case CorrelationA:
-        case CorrelationB: entry.study = makeCorrelationStudy(subject); break;
-        case FloorA:
-        case FloorB: entry.study = makeFloorStudy(subject); break;
-        case Saved: entry.study = makeSavingsStudy(subject); break;
-        case KINDS: break;
-        }
+        entry.study = kind.make({.like = like,
+                                 .scene = scene,
+                                 .camera = order.pose ? cameraOf(*order.pose, base, scene.origin) : base,
+                                 .settings = settingsOf(order, side),
+                                 .side = side});
     }
     return changed;
 }
@@ -129,8 +87,8 @@ bool Studies::busy() const
 
 bool Studies::step()
 {
-    for (int tried = 0; tried < KINDS; ++tried) {
-        turn_ = (turn_ + 1) % KINDS;
+    for (size_t tried = 0; tried < STUDIES; ++tried) {
+        turn_ = (turn_ + 1) % STUDIES;
         const Entry& entry = entries_[turn_];
         if (entry.study && !entry.study->done()) return entry.study->step(findings_);
     }

@@ -1,10 +1,11 @@
 #pragma once
 // Studies of what the sides do, measured beside their pictures: a frame at a time, on the same device, in turns.
 
+#include <iterator>
 #include <memory>
-#include <vector>
+#include <optional>
 
-#include "passes/pipeline_pool.h"
+#include "passes/frame_plan.h"
 #include "ui/window/findings.h"
 
 namespace ui
@@ -26,18 +27,20 @@ struct Subject {
     passes::Settings settings;
     Side side = A;
 };
-std::unique_ptr<Study> makeReferenceStudy(const Subject& subject);
-std::unique_ptr<Study> makeCorrelationStudy(const Subject& subject); // null: it has no history
-std::unique_ptr<Study> makeFloorStudy(const Subject& subject);
-std::unique_ptr<Study> makeSavingsStudy(const Subject& subject);
+struct StudyKind {
+    bool eachSide;                          // else of A alone
+    bool ofPicture;                         // it is the same whatever of the settings does not change the right picture
+    uint64_t (*ordered)(const StudyOrder&); // another number asks for another study, 0 for none
+    std::unique_ptr<Study> (*make)(const Subject&); // null: there is nothing to study
+    void (*forget)(Findings&, Side);
+};
+extern const StudyKind STUDY_KINDS[4];
 
 class Studies
 {
   public:
-    using Stages = std::vector<std::pair<std::string, passes::Variant>>;
-
     // What the order's studies compile.
-    static Stages stagesFor(const Order& order, const passes::Renderer& like);
+    static passes::StageList stagesFor(const Order& order, const passes::Renderer& like);
 
     // Begins what is newly ordered, ends what no longer is, and starts over what is of other settings or another camera
     // now. True: findings() have lost something. Throws Error: memory, the device is lost.
@@ -48,19 +51,14 @@ class Studies
     std::shared_ptr<const Findings> findings() const { return std::make_shared<const Findings>(findings_); }
 
   private:
-    enum Kind { Reference, CorrelationA, CorrelationB, FloorA, FloorB, Saved, KINDS };
+    static constexpr size_t STUDIES = std::size(STUDY_KINDS) * SIDES;
     struct Entry {
         std::unique_ptr<Study> study;
-        bool ordered = false;
-        Order of; // that it was begun for
+        std::optional<Order> of; // that it was begun for; empty: it is not ordered
     };
-    static bool wanted(const Order& order, Kind kind);
-    static bool sameSubject(const Order& a, const Order& b, Kind kind);
-    void forget(Kind kind);
-
-    Entry entries_[KINDS];
+    Entry entries_[STUDIES];
     Findings findings_;
-    int turn_ = 0;
+    size_t turn_ = 0;
 };
 
 } // namespace ui

@@ -1,12 +1,12 @@
-// The studies themselves.
+// The studies themselves, and the list of them.
 
 #include "ui/window/studies.h"
 
+#include "engine/base/clock.h"
 #include "passes/experiments/correlator.h"
 #include "passes/experiments/reference.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,13 +16,6 @@ namespace ui
 
 namespace
 {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::unique_ptr<passes::Renderer> siblingOf(const Subject& subject, const passes::Settings& settings, uint32_t runs = 1)
 {
@@ -243,27 +236,30 @@ class SavingsStudy : public Study
     Savings savings_;
 };
 
+// -------------------------------------------------------------------------------------------------------------- kinds
+
+template <class Kind>
+std::unique_ptr<Study> make(const Subject& subject)
+{
+    return std::make_unique<Kind>(subject);
+}
+
+std::unique_ptr<Study> makeCorrelation(const Subject& subject)
+{
+    const bool history = subject.settings.method != passes::Method::Pt && subject.settings.maxConfidence >= 2;
+    return history ? make<CorrelationStudy>(subject) : nullptr;
+}
+
 } // namespace
 
-std::unique_ptr<Study> makeReferenceStudy(const Subject& subject)
-{
-    return std::make_unique<ReferenceStudy>(subject);
-}
-
-std::unique_ptr<Study> makeCorrelationStudy(const Subject& subject)
-{
-    if (subject.settings.method == passes::Method::Pt || subject.settings.maxConfidence < 2) return nullptr;
-    return std::make_unique<CorrelationStudy>(subject);
-}
-
-std::unique_ptr<Study> makeFloorStudy(const Subject& subject)
-{
-    return std::make_unique<FloorStudy>(subject);
-}
-
-std::unique_ptr<Study> makeSavingsStudy(const Subject& subject)
-{
-    return std::make_unique<SavingsStudy>(subject);
-}
+const StudyKind STUDY_KINDS[] = {
+    {false, true, [](const StudyOrder& order) { return uint64_t{order.reference}; }, make<ReferenceStudy>,
+     [](Findings& findings, Side) { findings.reference.reset(); }},
+    {true, false, [](const StudyOrder& order) { return uint64_t{order.correlation}; }, makeCorrelation,
+     [](Findings& findings, Side side) { findings.curves[side].reset(); }},
+    {true, false, [](const StudyOrder& order) { return uint64_t{order.floor}; }, make<FloorStudy>,
+     [](Findings& findings, Side side) { findings.floors[side].reset(); }},
+    {false, false, [](const StudyOrder& order) { return order.savings; }, make<SavingsStudy>,
+     [](Findings& findings, Side) { findings.savings.reset(); }}};
 
 } // namespace ui

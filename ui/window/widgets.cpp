@@ -1,7 +1,5 @@
 #include "ui/window/widgets.h"
 
-#include "engine/base/check.h"
-
 #include <algorithm>
 #include <cinttypes>
 
@@ -49,21 +47,23 @@ bool button(Places& places, const char* label, const std::string& name, const ch
     return pressed;
 }
 
+bool checkbox(Places& places, const char* label, const std::string& name, bool& value, const char* doc)
+{
+    const bool changed = ImGui::Checkbox(label, &value);
+    remember(places, name);
+    explain(doc);
+    return changed;
+}
+
+void sentence(const ImVec4& color, const std::string& text)
+{
+    ImGui::PushTextWrapPos();
+    ImGui::TextColored(color, "%s", text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
 namespace
 {
-
-std::vector<const char*> labelsOf(passes::Method)
-{
-    std::vector<const char*> labels = {"off (pt)", "luminance", "RGB", "grouped"};
-    CHECK_EQ(labels.size(), wordsOf(passes::Method()).size());
-    return labels;
-}
-template <class T>
-std::vector<const char*> labelsOf(T)
-{
-    const auto words = wordsOf(T());
-    return {words.begin(), words.end()};
-}
 
 // Enumerations have a button for each value.
 template <class T>
@@ -74,56 +74,51 @@ void edit(Places& places, const passes::Knob& knob, T& value)
     ImGui::TextColored(colors::GRAY, "%s", knob.name);
     explain(knob.doc);
     ImGui::SameLine(std::max(4.2f * ImGui::GetFontSize(), ImGui::CalcTextSize(knob.name).x + ImGui::GetFontSize()));
-    int index = int(value);
-    if (choose(places, knob.name, index, labelsOf(value), knob.doc)) value = T(index);
+    choose(places, knob.name, value, {passes::LABELS_OF<T>.begin(), passes::LABELS_OF<T>.end()}, knob.doc);
 }
-void edit(Places& places, const passes::Knob& knob, bool& value)
+
+// Everything else is one widget.
+void show(const passes::Knob& knob, bool& value)
 {
     ImGui::Checkbox(knob.name, &value);
-    remember(places, knob.name);
-    explain(knob.doc);
 }
-void edit(Places& places, const passes::Knob& knob, uint32_t& value)
+void show(const passes::Knob& knob, uint32_t& value)
 {
     const uint32_t low = uint32_t(knob.low), high = uint32_t(knob.high);
     const auto flags = ImGuiSliderFlags_AlwaysClamp | (high > 1000 ? ImGuiSliderFlags_Logarithmic : 0);
     ImGui::SliderScalar(knob.name, ImGuiDataType_U32, &value, &low, &high, "%u", flags);
-    remember(places, knob.name);
-    explain(knob.doc);
 }
-void edit(Places& places, const passes::Knob& knob, float& value)
+void show(const passes::Knob& knob, float& value)
 {
     ImGui::SliderFloat(knob.name, &value, float(knob.low), float(knob.high), "%.3g",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    remember(places, knob.name);
-    explain(knob.doc);
 }
-void edit(Places&, const passes::Knob& knob, double& value)
+void show(const passes::Knob& knob, double& value)
 {
     double typed = value;
     if (ImGui::InputDouble(knob.name, &typed) && typed >= knob.low && typed <= knob.high) value = typed;
-    explain(knob.doc);
 }
-void edit(Places& places, const passes::Knob& knob, uint64_t& value)
+void show(const passes::Knob& knob, uint64_t& value)
 {
     ImGui::InputScalar(knob.name, ImGuiDataType_U64, &value, nullptr, nullptr, "%" PRIu64,
                        ImGuiInputTextFlags_EnterReturnsTrue);
-    remember(places, knob.name);
-    explain(knob.doc);
 }
-void edit(Places&, const passes::Knob& knob, std::string& value)
+void show(const passes::Knob& knob, std::string& value)
 {
     std::string text = value;
     if (ImGui::InputText(knob.name, &text, ImGuiInputTextFlags_EnterReturnsTrue)) value = text;
-    explain(knob.doc);
 }
-void edit(Places& places, const passes::Knob& knob, passes::SizeField<uint32_t>&& size)
+void show(const passes::Knob& knob, passes::SizeField<uint32_t>&& size)
 {
     int values[2] = {int(size.width), int(size.height)};
-    if (ImGui::InputInt2(knob.name, values, ImGuiInputTextFlags_EnterReturnsTrue)) {
-        size.width = uint32_t(std::clamp(values[0], 1, 8192));
-        size.height = uint32_t(std::clamp(values[1], 1, 8192));
-    }
+    if (!ImGui::InputInt2(knob.name, values, ImGuiInputTextFlags_EnterReturnsTrue)) return;
+    size.width = uint32_t(std::clamp(values[0], 1, 8192));
+    size.height = uint32_t(std::clamp(values[1], 1, 8192));
+}
+template <class T>
+void edit(Places& places, const passes::Knob& knob, T&& value)
+{
+    show(knob, std::forward<T>(value));
     remember(places, knob.name);
     explain(knob.doc);
 }

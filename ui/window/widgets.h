@@ -30,10 +30,23 @@ void explain(const char* text);                         // the last widget, whil
 // One of several words; true when it changed.
 bool choose(Places& places, const std::string& name, int& value, const std::vector<const char*>& labels,
             const char* doc);
+template <class Choice>
+bool choose(Places& places, const std::string& name, Choice& value, const std::vector<const char*>& labels,
+            const char* doc)
+{
+    int index = int(value);
+    const bool changed = choose(places, name, index, labels, doc);
+    value = Choice(index);
+    return changed;
+}
+bool checkbox(Places& places, const char* label, const std::string& name, bool& value, const char* doc);
 bool button(Places& places, const char* label, const std::string& name, const char* doc);
 
 // The settings for which `wanted(name)` holds, in the list's order.
 void editSettings(Places& places, passes::Settings& settings, const std::function<bool(const passes::Knob&)>& wanted);
+
+// A sentence as long as it likes.
+void sentence(const ImVec4& color, const std::string& text);
 
 // Names and values, folded away until opened.
 template <class Value>

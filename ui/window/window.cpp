@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/base/json.h"
+#include "ui/cli/interrupt.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/presets.h"
 #include "ui/window/camera_hands.h"
@@ -19,7 +20,6 @@
 #include "ui/window/window_report.h"
 
 #include <algorithm>
-#include <csignal>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -38,12 +38,6 @@ namespace
 constexpr double IDLE_SECONDS = 0.1; // between looks at the world when nothing happens
 constexpr double LOSS_SECONDS = 10;  // a screen's device that is lost twice within this time is given up
 constexpr size_t LATENCIES = 1000;   // that percentiles are taken of
-
-volatile std::sig_atomic_t stopRequested = 0;
-extern "C" void onStop(int)
-{
-    stopRequested = 1;
-}
 
 using SettingsPair = std::pair<passes::Settings, std::optional<passes::Settings>>;
 
@@ -82,13 +76,11 @@ class Window
         presenter_.reset();
         ImGui_ImplGlfw_Shutdown();
     }
-    Window(const Window&) = delete;
-    Window& operator=(const Window&) = delete;
 
     void run()
     {
         int hot = 3;
-        while (!glfwWindowShouldClose(frame_.window) && !stopRequested) {
+        while (!glfwWindowShouldClose(frame_.window) && !interrupt_.requested()) {
             const double waitStart = glfwGetTime();
             const double wait = hot > 0 ? 0.008 : IDLE_SECONDS;
             glfwWaitEventsTimeout(wait);
@@ -122,14 +114,23 @@ class Window
         }
     }
 
-    void usePreset(const std::string& nameOrFile)
+    // An Error is told to the person.
+    template <class Work>
+    void attempt(Work&& work)
     {
         try {
-            applyPreset(state_.edited(), nameOrFile);
-            state_.message = fmt::format("Preset \"{}\" is set.", nameOrFile);
+            work();
         } catch (const Error& error) {
             state_.message = error.what();
         }
+    }
+
+    void usePreset(const std::string& nameOrFile)
+    {
+        attempt([&] {
+            applyPreset(state_.edited(), nameOrFile);
+            state_.message = fmt::format("Preset \"{}\" is set.", nameOrFile);
+        });
     }
 
     // Large files take their time: elsewhere.
@@ -147,13 +148,11 @@ class Window
     void takeReference()
     {
         if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-        try {
+        attempt([&] {
             auto [reference, warnings] = loading_.get();
             setReference(std::move(reference));
             for (const std::string& warning : warnings) state_.message = warning;
-        } catch (const Error& error) {
-            state_.message = error.what();
-        }
+        });
     }
 
     void setReference(ReferencePointer reference)
@@ -214,13 +213,11 @@ class Window
     {
         const ShotPointer& shot = state_.pictures.sides[state_.editing];
         if (!shot || shot->order.moving) return;
-        try {
+        attempt([&] {
             line_ = takeScreenshot(*shot);
             glfwSetClipboardString(frame_.window, line_.c_str());
             state_.message = "Saved; in the clipboard: " + line_;
-        } catch (const Error& error) {
-            state_.message = error.what();
-        }
+        });
     }
 
     void answerRequests()
@@ -248,12 +245,7 @@ class Window
     void remember()
     {
         const std::string file = memoryFile();
-        if (file.empty()) return;
-        try {
-            keep(memory_, file);
-        } catch (const Error& error) {
-            state_.message = error.what();
-        }
+        if (!file.empty()) attempt([&] { keep(memory_, file); });
     }
 
     // Where the picture fits beside the panel, in pixels of the framebuffer.
@@ -400,6 +392,7 @@ class Window
         writeText(options_.report, jsonText(json, 2) + "\n");
     }
 
+    Interrupt interrupt_;
     WindowOptions options_;
     WindowMemory memory_;
     Frame frame_;
@@ -425,12 +418,7 @@ class Window
 
 void showWindow(const WindowOptions& options)
 {
-    stopRequested = 0;
-    std::signal(SIGTERM, onStop);
-    std::signal(SIGINT, onStop);
     Window(options).run();
-    std::signal(SIGTERM, SIG_DFL);
-    std::signal(SIGINT, SIG_DFL);
 }
 
 } // namespace ui

@@ -23,23 +23,11 @@ constexpr int SMALLEST = 320, LARGEST = 16384; // sides of a window that is wort
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const glm::dvec3& v)
-{
-    return {v.x, v.y, v.z};
-}
 glm::dvec3 vectorOf(const Json& json)
 {
     return {json.at(0), json.at(1), json.at(2)};
 }
 
-Json toJson(const std::optional<Pose>& pose)
-{
-    if (!pose) return nullptr;
-    return {{"position", toJson(pose->position)},
-            {"target", toJson(pose->target)},
-            {"up", toJson(pose->up)},
-            {"yfov", pose->yfov}};
-}
 std::optional<Pose> poseOf(const Json& json)
 {
     if (json.is_null()) return std::nullopt;
@@ -86,12 +74,10 @@ void keep(const WindowMemory& memory, const std::string& file)
 {
     Json bookmarks = Json::object();
     for (const auto& [scene, poses] : memory.bookmarks)
-        for (const std::optional<Pose>& pose : poses) bookmarks[scene].push_back(toJson(pose));
+        for (const std::optional<Pose>& pose : poses) bookmarks[scene].push_back(pose ? toJson(*pose) : Json());
     const Json json = {
         {"size", memory.size}, {"layout", memory.layout}, {"recent", memory.recent}, {"bookmarks", bookmarks}};
-    std::error_code failure;
-    std::filesystem::create_directories(std::filesystem::path(file).parent_path(), failure);
-    if (failure) throw Error("The folder of \"{}\" cannot be made: {}.", file, failure.message());
+    files::createFolder(std::filesystem::path(file).parent_path());
     writeText(file, jsonText(json, 2) + "\n");
 }
 

@@ -1,4 +1,5 @@
 #include "engine/base/statistics.h"
+#include "tests/support/chi_squared.h"
 
 #include <gtest/gtest.h>
 
@@ -190,30 +191,6 @@ TEST(ChiSquared, PoolsSmallBinsAndKeepsItsLevel)
         rejected += test.p < 0.05;
     }
     expectRate(rejected, trials, 0.05);
-}
-
-TEST(Jackknife, CorrectsBiasAndCoversTheTruth)
-{
-    std::mt19937_64 random(7);
-    std::normal_distribution<double> normal(2, 1);
-    // The square of the mean: biased by sigma^2 / n; the truth is 4.
-    const auto squareOfMean = [](std::span<const double> values) {
-        const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-        return mean * mean;
-    };
-    const int trials = 4000;
-    const size_t n = 20;
-    Moments value;
-    int covered = 0;
-    for (int trial = 0; trial < trials; ++trial) {
-        std::vector<double> samples(n);
-        for (double& s : samples) s = normal(random);
-        const Jackknife j = jackknife(samples, squareOfMean);
-        value.add(j.value);
-        covered += std::abs(j.value - 4) < studentQuantile(0.975, n - 1) * j.standardError;
-    }
-    EXPECT_NEAR(value.mean(), 4, 4.9 * std::sqrt(value.varianceOfMean())); // the bias would be 0.05 = 3.5 more errors
-    EXPECT_NEAR(covered / double{trials}, 0.95, 0.02);
 }
 
 TEST(MeanInterval, HoldsTheMeanAsOftenAsItSays)

@@ -1,6 +1,5 @@
 // Every file of ../shared/malformed loads or fails as its manifest says, in a child process of limited memory and time.
-// Covers engine/base/shown.cpp, engine/scene/gltf_json.cpp, engine/scene/gltf_json_checks.cpp,
-// engine/scene/gltf_scene_checks.cpp.
+// Covers engine/base/shown.cpp, engine/scene/gltf_json.cpp, engine/scene/gltf_json_checks.cpp.
 
 #include <csignal>
 #include <sys/resource.h>

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/base/statistics.h"
+#include "tests/support/chi_squared.h"
 #include "tests/support/gpu_fixture.h"
 
 namespace

@@ -7,6 +7,7 @@
 
 #include "engine/base/statistics.h"
 #include "engine/scene/shapes.h"
+#include "tests/support/chi_squared.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/reference_material.h"
 #include "tests/support/scene_buffers.h"

@@ -1,5 +1,5 @@
 // Two settings beside each other, the reference, and what is on the screen.
-// Covers ui/window/compare_room.cpp, ui/window/correlation_plot.cpp, ui/window/axes.cpp, ui/window/plots.cpp,
+// Covers ui/window/compare_room.cpp, ui/window/axes.cpp, ui/window/plots.cpp,
 // ui/window/studies.cpp, ui/window/study_kinds.cpp.
 
 #include "engine/image/image.h"

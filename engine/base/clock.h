@@ -1,0 +1,11 @@
+#pragma once
+// Time that passes, on a clock that is never set.
+
+#include <chrono>
+
+using Clock = std::chrono::steady_clock;
+
+inline double secondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
