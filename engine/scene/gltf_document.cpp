@@ -120,9 +120,6 @@ void warnOfIgnored(const Object& document, Warnings& warnings)
                                 : fmt::format("Ignored the extension \"{}\" on {} material{}.", shown(name), count,
                                               count == 1 ? "" : "s"));
     }
-    if (const size_t count = document.arraySize("animations"))
-        warnings.add(fmt::format("Ignored {} animation{}: the scene is shown in its default pose.", count,
-                                 count == 1 ? "" : "s"));
 }
 
 // tinygltf reads structure only. It recurses into extras, and cuts integers of extensions to 32 bits.
@@ -157,7 +154,8 @@ std::span<const std::byte> Document::view(int bufferView) const
     return std::span(buffers[static_cast<size_t>(view.buffer)]).subspan(view.byteOffset, view.byteLength);
 }
 
-Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, Warnings& warnings)
+Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, bool animations,
+                      Warnings& warnings)
 {
     const std::vector<std::byte> bytes = files::read(file, MAX_FILE_BYTES);
     const bool isBinary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
@@ -169,6 +167,7 @@ Document openDocument(const std::filesystem::path& file, const std::filesystem::
     Document document{.folders = {file.parent_path(), assetRoot}, .images = listImages(root)};
     readBuffers(root, container.binary, document);
     document.materials = readMaterials(root, warnings);
+    if (animations) document.animations = listAnimations(root, warnings);
     warnOfIgnored(root, warnings);
     document.model = parseModel(std::move(json));
     return document;

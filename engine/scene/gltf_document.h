@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/gltf_animations.h"
 #include "engine/scene/gltf_uri.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/tinygltf.h"
@@ -28,6 +29,7 @@ struct Document {
     std::vector<std::vector<std::byte>> buffers;
     std::vector<ImageSource> images;
     std::vector<Material> materials;          // as readMaterials() gives them
+    AnimationSources animations;              // none, where they are not asked for
     std::vector<std::filesystem::path> files; // that the buffers came from
 
     std::span<const std::byte> view(int bufferView) const; // all bytes of a buffer view
@@ -35,6 +37,7 @@ struct Document {
 
 // Reads .gltf or .glb (told apart by the first bytes), checks it (gltf_json_checks.h) and reads materials and all
 // buffers. Throws Error.
-Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, Warnings& warnings);
+Document openDocument(const std::filesystem::path& file, const std::filesystem::path& assetRoot, bool animations,
+                      Warnings& warnings);
 
 } // namespace scene::gltf

@@ -19,8 +19,6 @@ namespace
 {
 
 constexpr uint64_t MAX_GEOMETRY_BYTES = uint64_t{1} << 31; // instances multiply what a small file can ask for
-constexpr double LARGEST_SCENE = 1e9;   // metres; products of lengths as traversal forms them stay inside float32
-constexpr double SMALLEST_AREA = 1e-19; // twice the area, m^2; below, the square of the normal underflows in float32
 
 // Of EXT_mesh_gpu_instancing: translations, rotations and scales, those that there are.
 std::array<const Accessor*, 3> instancingOf(MeshPartReader& reader, const tinygltf::Node& node)
@@ -97,7 +95,7 @@ void checkSize(const Document& document, const NodeTree& tree, MeshPartReader& r
     double bytes = 0; // no overflow, and exact far beyond the limit
     for (const uint32_t i : tree.visible) {
         const tinygltf::Node& node = document.model.nodes[i];
-        if (node.mesh >= 0)
+        if (node.mesh >= 0 && !tree.hidden[i])
             bytes += static_cast<double>(meshBytes[static_cast<size_t>(node.mesh)]) *
                      static_cast<double>(instanceCount(instancingOf(reader, node)));
     }
@@ -145,8 +143,8 @@ void append(Scene& scene, std::vector<glm::dvec3>& positions, const MeshPart& pa
         scene.triangles.push_back({{first + a, first + b, first + c}, material});
 }
 
-// Moves the box's centre to the origin and rounds to float32; what has no area then is dropped.
-void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Warnings& warnings)
+// Moves the box's centre to the origin and rounds to float32; what has no area then is dropped, unless it moves.
+void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Motion* motion, Warnings& warnings)
 {
     constexpr double INF = std::numeric_limits<double>::infinity();
     glm::dvec3 low(INF), high(-INF);
@@ -169,33 +167,43 @@ void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Warnings& wa
         scene.positions.push_back(used ? glm::vec3(position - scene.origin)
                                        : glm::vec3(0)); // of dropped triangles only
     }
-    const size_t dropped = std::erase_if(scene.triangles, [&](const Triangle& triangle) {
+    size_t kept = 0, part = 0;
+    const size_t parts = motion ? motion->parts.size() : 0, before = scene.triangles.size();
+    for (size_t i = 0, end = 0; i < before; ++i) { // end: of the part that moves
+        for (; part < parts && motion->parts[part].firstTriangle == i; ++part) {
+            end = i + motion->meshes[motion->parts[part].mesh].triangles.size();
+            motion->parts[part].firstTriangle = static_cast<uint32_t>(kept);
+        }
+        const Triangle triangle = scene.triangles[i];
         const glm::dvec3 a = scene.positions[triangle.vertices[0]];
         const glm::dvec3 b = scene.positions[triangle.vertices[1]];
         const glm::dvec3 c = scene.positions[triangle.vertices[2]];
-        return !(glm::length(glm::cross(b - a, c - a)) >= SMALLEST_AREA);
-    });
+        if (i < end || glm::length(glm::cross(b - a, c - a)) >= SMALLEST_AREA) scene.triangles[kept++] = triangle;
+    }
+    scene.triangles.resize(kept);
+    const size_t dropped = before - kept;
     if (dropped > 0) warnings.add("Dropped a triangle without area.", dropped);
 }
 
 } // namespace
 
-void readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Warnings& warnings,
-                  const std::function<void(double)>& progress)
+MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Warnings& warnings,
+                        const std::function<void(double)>& progress)
 {
     const tinygltf::Model& model = document.model;
     MeshPartReader reader(document, warnings);
     checkSize(document, tree, reader);
+    MotionPlan plan = planMotion(document, tree, reader, warnings);
 
     std::vector<glm::dvec3> positions;
     for (size_t n = 0; n < tree.visible.size(); ++n) {
         if (progress && n % 64 == 0) progress(static_cast<double>(n) / static_cast<double>(tree.visible.size()));
         const uint32_t nodeIndex = tree.visible[n];
         const tinygltf::Node& node = model.nodes[nodeIndex];
-        if (node.mesh < 0) continue;
+        if (node.mesh < 0 || tree.hidden[nodeIndex]) continue;
         const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
         Placement placement;
-        placement.morphWeights = node.weights.empty() ? &mesh.weights : &node.weights;
+        placement.morphWeights = node.weights.empty() ? mesh.weights : node.weights;
         if (node.skin >= 0) placement.worldFromSkin = skinMatrices(document, tree, reader, node.skin);
         for (const glm::dmat4& instance : instancesOf(reader, node, warnings)) {
             placement.worldFromMesh = tree.worldFromNode[nodeIndex] * instance;
@@ -206,14 +214,22 @@ void readGeometry(const Document& document, const NodeTree& tree, Scene& scene, 
                     warnings.add(fmt::format("Ignored {}: it has no positions, or only points or lines.", where));
                     continue;
                 }
-                const size_t material =
+                const size_t index =
                     primitive.material < 0 ? scene.materials.size() - 1 : static_cast<size_t>(primitive.material);
-                append(scene, positions, reader.read(primitive, where, placement, scene.materials[material]),
-                       static_cast<uint32_t>(material));
+                const Material& material = scene.materials[index];
+                const Motion::Part part{.nodeFromMesh = instance,
+                                        .firstVertex = static_cast<uint32_t>(positions.size()),
+                                        .firstTriangle = static_cast<uint32_t>(scene.triangles.size())};
+                append(scene, positions,
+                       plan.motion && plan.movesMesh[nodeIndex]
+                           ? addPart(plan, document, reader, i, nodeIndex, placement, part, material)
+                           : reader.read(primitive, where, placement, material),
+                       static_cast<uint32_t>(index));
             }
         }
     }
-    settle(scene, positions, warnings);
+    settle(scene, positions, plan.motion.get(), warnings);
+    return plan;
 }
 
 } // namespace scene::gltf

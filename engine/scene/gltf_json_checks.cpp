@@ -23,8 +23,9 @@ constexpr uint64_t MAX_SPARSE_ELEMENTS = uint64_t{1} << 26; // of all accessors 
 constexpr uint64_t UNSIGNED_BYTE = 5121, UNSIGNED_SHORT = 5123, UNSIGNED_INT = 5125, FLOAT = 5126;
 
 // Beside those of materials.
-constexpr std::array<std::string_view, 4> SUPPORTED_EXTENSIONS = {"EXT_mesh_gpu_instancing", "KHR_lights_punctual",
-                                                                  "KHR_mesh_quantization", "KHR_texture_transform"};
+constexpr std::array<std::string_view, 6> SUPPORTED_EXTENSIONS = {"EXT_mesh_gpu_instancing", "KHR_animation_pointer",
+                                                                  "KHR_lights_punctual",     "KHR_mesh_quantization",
+                                                                  "KHR_node_visibility",     "KHR_texture_transform"};
 
 void checkAsset(const Object& document)
 {
@@ -304,6 +305,7 @@ void checkNodes(const Object& document)
         node.index("skin", "skins");
         node.extension("KHR_lights_punctual",
                        [&](const Object& use) { use.required("light", use.index("light", lights, "lights")); });
+        node.extension("KHR_node_visibility", [&](const Object& use) { use.boolean("visible"); });
         node.extension("EXT_mesh_gpu_instancing", [&](const Object& use) { checkInstancing(document, use); });
         node.eachIndex("children", "nodes", [&](uint32_t child) {
             if (parents[child] != NO_PARENT)
@@ -356,6 +358,7 @@ void checkAnimations(const Object& document)
         return document.at("accessors", accessor).integer("count", 1, MAX_BYTES).value();
     };
     document.eachObject("animations", [&](const Object& animation, size_t) {
+        animation.string("name");
         animation.eachObject("samplers", [&](const Object& sampler, size_t) {
             const uint64_t keys = countOf(sampler.required("input", sampler.index("input", "accessors")));
             const uint64_t outputs = countOf(sampler.required("output", sampler.index("output", "accessors")));

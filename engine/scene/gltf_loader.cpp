@@ -15,8 +15,8 @@ namespace scene
 namespace
 {
 
-// Materials that no triangle has cost images and shader features: leave them out.
-void keepUsedMaterials(Scene& scene)
+// Materials that no triangle has cost images and shader features: leave them out. Returns where the others are now.
+std::vector<uint32_t> keepUsedMaterials(Scene& scene)
 {
     std::vector<uint32_t> newIndex(scene.materials.size(), NONE);
     std::vector<Material> used;
@@ -28,6 +28,7 @@ void keepUsedMaterials(Scene& scene)
     }
     for (Triangle& triangle : scene.triangles) triangle.material = newIndex[triangle.material];
     scene.materials = std::move(used);
+    return newIndex;
 }
 
 double boundingRadius(const Scene& scene)
@@ -40,13 +41,12 @@ double boundingRadius(const Scene& scene)
     return squared > 0 ? std::sqrt(static_cast<double>(squared)) : 1;
 }
 
-void placeCameras(Scene& scene, Warnings& warnings)
+void placeCameras(Scene& scene, const std::vector<gltf::WorldCamera>& cameras, double radius, Warnings& warnings)
 {
-    const double radius = boundingRadius(scene);
-    for (Camera& camera : scene.cameras) {
-        // What lies in front: the point of the view axis nearest to the scene's centre.
-        const double ahead = glm::dot(-camera.position, camera.forward);
-        camera.target = camera.position + camera.forward * (ahead > 0.01 * radius ? ahead : 0.5 * radius);
+    for (const gltf::WorldCamera& source : cameras) {
+        Camera& camera = scene.cameras.emplace_back(source.camera);
+        camera.position -= scene.origin;
+        aim(camera, radius);
     }
     if (!scene.cameras.empty()) return;
 
@@ -63,12 +63,27 @@ void placeCameras(Scene& scene, Warnings& warnings)
     warnings.add("The file has no camera: placed one in front that sees the whole scene.");
 }
 
+void placeLights(Scene& scene, const std::vector<gltf::WorldLight>& lights)
+{
+    for (const gltf::WorldLight& source : lights)
+        scene.lights.emplace_back(source.light).position = glm::vec3(source.position - scene.origin);
+}
+
+bool movesEmission(const Motion& motion)
+{
+    return std::ranges::any_of(motion.animations, [](const Animation& animation) {
+        return std::ranges::any_of(animation.channels, [](const Channel& channel) {
+            return channel.property == Property::EmissiveFactor || channel.property == Property::EmissiveStrength;
+        });
+    });
+}
+
 void addSkyWhenDark(Scene& scene, Warnings& warnings)
 {
     const bool shines = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
         return material.unlit || material.emission != glm::vec3(0);
     });
-    if (!scene.lights.empty() || shines) return;
+    if (!scene.lights.empty() || shines || (scene.motion && movesEmission(*scene.motion))) return;
     scene.environment = {.width = 1, .height = 1, .radiance = {glm::vec3(1)}};
     warnings.add("The file has no light: added a uniform sky of radiance 1.");
 }
@@ -82,18 +97,25 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     };
     Warnings warnings;
     report("Reading")(0);
-    gltf::Document document = gltf::openDocument(file, options.assetRoot, warnings);
+    gltf::Document document = gltf::openDocument(file, options.assetRoot, options.animations, warnings);
     const gltf::NodeTree tree = gltf::resolveNodes(document, warnings);
     Scene scene;
     scene.name = file.stem().string();
     scene.materials = std::move(document.materials);
-    gltf::readGeometry(document, tree, scene, warnings, report("Building geometry"));
-    keepUsedMaterials(scene);
+    gltf::MotionPlan plan = gltf::readGeometry(document, tree, scene, warnings, report("Building geometry"));
+    const std::vector<uint32_t> materialOf = keepUsedMaterials(scene);
     scene.files = document.files;
     scene.images = gltf::readImages(document, scene.materials, scene.files, report("Decoding images"));
-    scene.cameras = gltf::readCameras(document, tree, scene.origin, warnings);
-    placeCameras(scene, warnings);
-    scene.lights = gltf::readLights(document, tree, scene.origin, warnings);
+    const std::vector<gltf::WorldCamera> cameras = gltf::readCameras(document, tree, warnings);
+    const double radius = boundingRadius(scene);
+    placeCameras(scene, cameras, radius, warnings);
+    const std::vector<gltf::WorldLight> lights = gltf::readLights(document, tree, warnings);
+    placeLights(scene, lights);
+    if (plan.motion) {
+        plan.motion->radius = radius;
+        gltf::completeMotion(plan, document, cameras, lights, materialOf, scene);
+        pose(scene, {}, 0); // hides what is not visible or has no area
+    }
     if (options.sky) addSkyWhenDark(scene, warnings);
     if (scene.triangles.empty()) warnings.add("The scene has no triangle.");
     scene.warnings = warnings.sentences();

@@ -12,14 +12,15 @@ namespace scene
 
 struct LoadOptions {
     std::function<void(const std::string& what, double fraction)>
-        progress;    // may be empty; called on the caller's thread
-    bool sky = true; // a file without light gets a uniform sky; false: the caller has an environment for it
+        progress;           // may be empty; called on the caller's thread
+    bool sky = true;        // a file without light gets a uniform sky; false: the caller has an environment for it
+    bool animations = true; // false: they are not read, whatever is wrong with them; nothing moves
     std::filesystem::path assetRoot; // buffers and textures may lie below it, too; empty: below the file's folder alone
 };
 
-// The file's default scene, in its default pose. Throws Error: one sentence naming the file, the object and the value.
-// Afterwards: finite vertices, unit normals, at least one camera, and light or emission (chosen by us when the file has
-// none; Scene::warnings says so).
+// The file's default scene, in the pose that its nodes state; Scene::motion holds its animations. Throws Error: one
+// sentence naming the file, the object and the value. Afterwards: finite vertices, unit normals, at least one camera,
+// and light or emission (chosen by us when the file has none; Scene::warnings says so).
 Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 } // namespace scene

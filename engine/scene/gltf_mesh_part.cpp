@@ -13,38 +13,39 @@ namespace scene::gltf
 namespace
 {
 
+constexpr std::array<const char*, ATTRIBUTES> NAMES = {"POSITION",   "NORMAL",     "TANGENT",
+                                                       "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+constexpr uint64_t MAX_DISPLACEMENTS = uint64_t{1} << 24; // of all morph targets that are kept: 1.4 GB
+
 bool isFinite(const glm::dvec3& v)
 {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// cof(M) (a x b) = (M a) x (M b): what normals and areas transform by. Exists for singular matrices too.
-glm::dmat3 cofactor(const glm::dmat3& m)
+template <class Attributes>
+int find(const Attributes& attributes, const std::string& name)
 {
-    return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? -1 : found->second;
 }
 
-int find(const tinygltf::Primitive& primitive, const std::string& name)
+// Components that a primitive's attribute has, as far as they count; morph targets add nothing to a tangent's side.
+uint32_t widthOf(Attribute attribute, const Accessor& base, const Accessor* target = nullptr)
 {
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
+    const uint32_t width = std::min(ATTRIBUTE_WIDTH[attribute], base.components());
+    if (!target) return width;
+    return std::min({width, target->components(), attribute == TANGENT ? 3 : width});
 }
 
 } // namespace
 
-struct MeshPartReader::Attribute {
-    const Accessor* base = nullptr;
-    std::vector<std::pair<double, const Accessor*>> targets;
-
-    double number(uint32_t element, uint32_t component) const
-    {
-        double sum = base->number(element, component);
-        for (const auto& [weight, target] : targets) {
-            if (component < target->components()) sum += weight * target->number(element, component);
-        }
-        return sum;
-    }
-    glm::dvec3 vec3(uint32_t element) const { return {number(element, 0), number(element, 1), number(element, 2)}; }
+struct MeshPartReader::Source {
+    std::string where;
+    std::array<const Accessor*, ATTRIBUTES> base = {};
+    std::vector<std::array<const Accessor*, ATTRIBUTES>> targets;
+    std::vector<std::array<const Accessor*, 2>> skin; // joints and weights of each set
+    size_t jointCount = 0;                            // 0: not skinned
+    bool wantsUv = false, hasTangents = false;
 };
 
 const Accessor& MeshPartReader::accessor(int index)
@@ -53,19 +54,30 @@ const Accessor& MeshPartReader::accessor(int index)
     return known != accessors_.end() ? known->second : accessors_.try_emplace(index, document_, index).first->second;
 }
 
-MeshPartReader::Attribute MeshPartReader::attribute(const tinygltf::Primitive& primitive, const std::string& name,
-                                                    const std::vector<double>* weights)
+MeshPartReader::Source MeshPartReader::open(const tinygltf::Primitive& primitive, const std::string& where,
+                                            size_t jointCount, const Material& material)
 {
-    Attribute result;
-    const int base = find(primitive, name);
-    if (base < 0) return result;
-    result.base = &accessor(base);
-    for (size_t i = 0; weights && i < std::min(weights->size(), primitive.targets.size()); ++i) {
-        const auto target = primitive.targets[i].find(name);
-        if (target != primitive.targets[i].end() && (*weights)[i] != 0)
-            result.targets.emplace_back((*weights)[i], &accessor(target->second));
+    Source source{.where = where, .jointCount = jointCount, .hasTangents = material.normalTexture.image != NONE};
+    std::array<bool, 2> wantsUv = {};
+    eachTexture(material, [&](const TextureUse& use) { wantsUv[use.uvSet] = source.wantsUv = true; });
+    source.targets.resize(primitive.targets.size());
+    for (uint32_t a = 0; a < ATTRIBUTES; ++a) {
+        const int base = find(primitive.attributes, NAMES[a]);
+        if (base < 0 || (a == TEXCOORD_0 && !wantsUv[0]) || (a == TEXCOORD_1 && !wantsUv[1])) continue;
+        if (a == TANGENT && !(source.base[NORMAL] && source.hasTangents)) continue;
+        source.base[a] = &accessor(base);
+        for (size_t t = 0; t < source.targets.size(); ++t) {
+            const int target = find(primitive.targets[t], NAMES[a]);
+            if (target >= 0) source.targets[t][a] = &accessor(target);
+        }
     }
-    return result;
+    for (int set = 0; jointCount > 0 && set < 4; ++set) {
+        const int joints = find(primitive.attributes, "JOINTS_" + std::to_string(set));
+        const int weights = find(primitive.attributes, "WEIGHTS_" + std::to_string(set));
+        if (joints < 0 || weights < 0) break;
+        source.skin.push_back({&accessor(joints), &accessor(weights)});
+    }
+    return source;
 }
 
 // The triangles of a list, strip or fan (glTF 2.0, 3.7.2.1), as elements of the attributes.
@@ -100,99 +112,18 @@ std::vector<std::array<uint32_t, 3>> MeshPartReader::readTriangles(const tinyglt
     return triangles;
 }
 
-glm::dmat4 MeshPartReader::skinTransform(const tinygltf::Primitive& primitive, uint32_t element,
-                                         const std::string& where, const Placement& placement)
+// What the triangles refer to, in the order of its first use; the triangles then count these. Each corner has its own
+// where the normals are to be flat.
+std::vector<uint32_t> MeshPartReader::usedElements(std::vector<std::array<uint32_t, 3>>& triangles, size_t elementCount,
+                                                   bool flat)
 {
-    glm::dmat4 sum(0);
-    double total = 0;
-    for (int set = 0; set < 4; ++set) {
-        const std::string suffix = std::to_string(set);
-        const int joints = find(primitive, "JOINTS_" + suffix), weights = find(primitive, "WEIGHTS_" + suffix);
-        if (joints < 0 || weights < 0) break;
-        for (uint32_t c = 0; c < 4; ++c) {
-            const double weight = accessor(weights).number(element, c);
-            if (weight == 0) continue;
-            const uint32_t joint = accessor(joints).integer(element, c);
-            if (joint >= placement.worldFromSkin.size())
-                throw Error("{} uses joint {} at vertex {}, but its skin has {}.", where, joint, element,
-                            placement.worldFromSkin.size());
-            sum += weight * placement.worldFromSkin[joint];
-            total += weight;
-        }
-    }
-    if (total == 0) { // NaN goes on: its triangles are dropped
-        warnings_.add(fmt::format("Left vertices of {} unskinned: their weights are all zero.", where));
-        return placement.worldFromMesh;
-    }
-    return sum / total;
-}
-
-void MeshPartReader::readVertices(const tinygltf::Primitive& primitive, const std::string& where,
-                                  const Placement& placement, const std::vector<uint32_t>& elements, MeshPart& part)
-{
-    const auto open = [&](const char* name) { return attribute(primitive, name, placement.morphWeights); };
-    const Attribute position = open("POSITION"), normal = open("NORMAL"), tangent = open("TANGENT"),
-                    color = open("COLOR_0");
-    const std::array<Attribute, 2> uv = {open("TEXCOORD_0"), open("TEXCOORD_1")};
-    for (size_t set = 0; set < 2; ++set) part.hasUv[set] = part.hasUv[set] && uv[set].base;
-    part.hasColors = color.base != nullptr;
-
-    glm::dmat4 world = placement.worldFromMesh;
-    size_t badUvs = 0, badColors = 0;
-    part.vertices.resize(elements.size());
-    for (size_t i = 0; i < elements.size(); ++i) {
-        const uint32_t element = elements[i];
-        Vertex& vertex = part.vertices[i];
-        if (!placement.worldFromSkin.empty()) world = skinTransform(primitive, element, where, placement);
-        const glm::dmat3 linear(world);
-        const double side = glm::determinant(linear) < 0 ? -1 : 1;
-        vertex.mirrored = side < 0;
-        vertex.position = glm::dvec3(world * glm::dvec4(position.vec3(element), 1));
-        if (normal.base) vertex.normal = unitOrZero(side * (cofactor(linear) * normal.vec3(element)));
-        if (normal.base && tangent.base && part.hasTangents) {
-            const double handedness = tangent.base->components() > 3 ? tangent.base->number(element, 3) : 0;
-            const glm::dvec3 direction = unitOrZero(linear * tangent.vec3(element));
-            if (handedness != 0 && direction != glm::dvec3(0))
-                vertex.tangent = {direction, handedness < 0 ? -side : side};
-        }
-        for (size_t set = 0; set < 2; ++set) {
-            if (!part.hasUv[set]) continue;
-            constexpr double LARGEST = 1e6; // where float32 has lost the texel anyway
-            const glm::dvec2 value(uv[set].number(element, 0), uv[set].number(element, 1));
-            if (std::abs(value.x) < LARGEST && std::abs(value.y) < LARGEST)
-                vertex.uv[set] = value;
-            else
-                ++badUvs;
-        }
-        for (uint32_t c = 0; part.hasColors && c < color.base->components(); ++c) {
-            const double value = color.number(element, c);
-            vertex.color[static_cast<int>(c)] =
-                static_cast<float>(std::clamp(std::isnan(value) ? 1.0 : value, 0.0, 1.0));
-            if (!(value >= 0 && value <= 1)) ++badColors;
-        }
-    }
-    if (badUvs > 0) warnings_.add("Took 0 for a texture coordinate that is not finite or beyond 1e6.", badUvs);
-    if (badColors > 0) warnings_.add("Clamped a vertex color to the range from 0 to 1.", badColors);
-}
-
-MeshPart MeshPartReader::read(const tinygltf::Primitive& primitive, const std::string& where,
-                              const Placement& placement, const Material& material)
-{
-    const bool flat = find(primitive, "NORMAL") < 0;
-    const size_t elementCount = accessor(find(primitive, "POSITION")).count();
-    MeshPart part;
-    part.triangles = readTriangles(primitive, elementCount, where);
-    part.hasTangents = material.normalTexture.image != NONE;
-    eachTexture(material, [&](const TextureUse& use) { part.hasUv[use.uvSet] = true; });
-
-    // Only vertices that a triangle uses; each corner its own where the normals are to be flat.
     std::vector<uint32_t> elements;
     if (vertexOf_.size() < elementCount) {
         vertexOf_.resize(elementCount);
         stampOf_.resize(elementCount, 0);
     }
     ++stamp_;
-    for (auto& triangle : part.triangles) {
+    for (auto& triangle : triangles) {
         for (uint32_t& corner : triangle) {
             const uint32_t element = corner;
             if (!flat && stampOf_[element] == stamp_) {
@@ -204,14 +135,95 @@ MeshPart MeshPartReader::read(const tinygltf::Primitive& primitive, const std::s
             elements.push_back(element);
         }
     }
-    const bool wantsUv = part.hasUv[0] || part.hasUv[1];
-    readVertices(primitive, where, placement, elements, part);
-    if (wantsUv && !part.hasUv[0] && !part.hasUv[1])
+    return elements;
+}
+
+// glTF 2.0, 3.7.3.3: up to four joints a set. Vertices whose weights are all zero stay where their mesh stands.
+void MeshPartReader::gatherInfluences(const Source& source, std::span<const uint32_t> elements, MeshVertices& vertices)
+{
+    for (const uint32_t element : elements) {
+        const size_t before = vertices.influences.size();
+        double total = 0;
+        for (const auto& [joints, weights] : source.skin) {
+            for (uint32_t c = 0; c < 4; ++c) {
+                const double weight = weights->number(element, c);
+                if (weight == 0) continue;
+                const uint32_t joint = joints->integer(element, c);
+                if (joint >= source.jointCount)
+                    throw Error("{} uses joint {} at vertex {}, but its skin has {}.", source.where, joint, element,
+                                source.jointCount);
+                vertices.influences.push_back({joint, weight});
+                total += weight;
+            }
+        }
+        if (total == 0) { // NaN goes on: its triangles are dropped
+            vertices.influences.resize(before);
+            warnings_.add(fmt::format("Left vertices of {} unskinned: their weights are all zero.", source.where));
+        }
+        vertices.influenceEnds.push_back(static_cast<uint32_t>(vertices.influences.size()));
+    }
+}
+
+// Morph targets are read where their weight is not zero.
+MeshVertices MeshPartReader::gather(const Source& source, std::span<const uint32_t> elements,
+                                    std::span<const double> weights)
+{
+    MeshVertices vertices{.count = elements.size()};
+    vertices.targets.resize(source.targets.size());
+    for (uint32_t a = 0; a < ATTRIBUTES; ++a) {
+        const Accessor* base = source.base[a];
+        if (!base) continue;
+        const uint32_t full = ATTRIBUTE_WIDTH[a], width = widthOf(Attribute(a), *base);
+        std::vector<double>& values = vertices.values[a];
+        values.assign(elements.size() * full, a == COLOR_0 ? 1 : 0);
+        for (size_t v = 0; v < elements.size(); ++v) {
+            for (uint32_t c = 0; c < width; ++c) values[v * full + c] = base->number(elements[v], c);
+        }
+        for (size_t t = 0; t < std::min(weights.size(), source.targets.size()); ++t) {
+            const Accessor* target = source.targets[t][a];
+            if (weights[t] == 0 || !target) continue;
+            Displacements& moved = vertices.targets[t][a];
+            const uint32_t moves = widthOf(Attribute(a), *base, target);
+            for (size_t v = 0; v < elements.size(); ++v) {
+                std::array<double, 4> value = {};
+                for (uint32_t c = 0; c < moves; ++c) value[c] = target->number(elements[v], c);
+                if (value == std::array<double, 4>{}) continue;
+                moved.vertices.push_back(static_cast<uint32_t>(v));
+                moved.values.insert(moved.values.end(), value.begin(), value.begin() + full);
+            }
+        }
+    }
+    if (source.jointCount > 0) gatherInfluences(source, elements, vertices);
+    return vertices;
+}
+
+MeshPart MeshPartReader::read(const tinygltf::Primitive& primitive, const std::string& where,
+                              const Placement& placement, const Material& material)
+{
+    const Source source = open(primitive, where, placement.worldFromSkin.size(), material);
+    const bool flat = !source.base[NORMAL];
+    MeshPart part{.hasUv = {source.base[TEXCOORD_0] != nullptr, source.base[TEXCOORD_1] != nullptr},
+                  .hasTangents = source.hasTangents,
+                  .hasColors = source.base[COLOR_0] != nullptr};
+    part.triangles = readTriangles(primitive, source.base[POSITION]->count(), where);
+    const std::vector<uint32_t> elements = usedElements(part.triangles, source.base[POSITION]->count(), flat);
+
+    // Through a block that stays in the cache: the primitive itself is never in memory twice.
+    constexpr size_t BLOCK = 1024;
+    Replaced replaced;
+    part.vertices.resize(elements.size());
+    for (size_t i = 0; i < elements.size(); i += BLOCK) {
+        const size_t count = std::min(BLOCK, elements.size() - i);
+        const MeshVertices block = gather(source, std::span(elements).subspan(i, count), placement.morphWeights);
+        poseVertices(block, placement, std::span(part.vertices).subspan(i, count), replaced);
+    }
+    if (replaced.uvs > 0)
+        warnings_.add("Took 0 for a texture coordinate that is not finite or beyond 1e6.", replaced.uvs);
+    if (replaced.colors > 0) warnings_.add("Clamped a vertex color to the range from 0 to 1.", replaced.colors);
+    if (source.wantsUv && !part.hasUv[0] && !part.hasUv[1])
         warnings_.add(fmt::format("{} has a texture but no texture coordinates for it.", where));
 
-    for (auto& triangle : part.triangles) {
-        if (part.vertices[triangle[0]].mirrored) std::swap(triangle[1], triangle[2]);
-    }
+    turnMirrored(part);
     const size_t dropped = std::erase_if(part.triangles, [&](const auto& triangle) {
         return !std::all_of(triangle.begin(), triangle.end(),
                             [&](uint32_t v) { return isFinite(part.vertices[v].position); });
@@ -224,23 +236,46 @@ MeshPart MeshPartReader::read(const tinygltf::Primitive& primitive, const std::s
     if (!flat && without > 0)
         warnings_.add("Replaced a normal that has no direction by that of the triangles.", without);
     completeNormals(part);
-    if (part.hasTangents) completeTangents(part, material.normalTexture);
+    if (part.hasTangents) completeTangents(part, material.normalTexture, true);
     return part;
 }
 
-void completeNormals(MeshPart& part)
+Mesh MeshPartReader::readMesh(const tinygltf::Primitive& primitive, const std::string& where, size_t jointCount,
+                              const Material& material)
 {
-    std::vector<glm::dvec3> sums(part.vertices.size(), glm::dvec3(0)); // weighted by area
-    for (const auto& [a, b, c] : part.triangles) {
-        const glm::dvec3& origin = part.vertices[a].position;
-        const glm::dvec3 area = glm::cross(part.vertices[b].position - origin, part.vertices[c].position - origin);
-        for (const uint32_t v : {a, b, c}) sums[v] += area;
+    const Source source = open(primitive, where, jointCount, material);
+    Mesh mesh{.hasTangents = source.hasTangents};
+    mesh.triangles = readTriangles(primitive, source.base[POSITION]->count(), where);
+    const std::vector<uint32_t> elements =
+        usedElements(mesh.triangles, source.base[POSITION]->count(), !source.base[NORMAL]);
+    displacements_ += elements.size() * source.targets.size();
+    if (displacements_ > MAX_DISPLACEMENTS)
+        throw Error(
+            "The morph targets up to {}, which has {} for {} vertices, hold {} displacements, more than the limit "
+            "of {}: use fewer, or leave animations out.",
+            where, source.targets.size(), elements.size(), displacements_, MAX_DISPLACEMENTS);
+    mesh.vertices = gather(source, elements, std::vector<double>(source.targets.size(), 1));
+
+    // What is not finite in the file is so in every pose.
+    std::vector<bool> bad(elements.size(), false);
+    const auto note = [&](size_t v, std::span<const double> numbers) {
+        if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) bad[v] = true;
+    };
+    for (size_t v = 0; v < elements.size(); ++v) note(v, std::span(mesh.vertices.values[POSITION]).subspan(3 * v, 3));
+    for (const MorphTarget& target : mesh.vertices.targets) {
+        const Displacements& moved = target[POSITION];
+        for (size_t i = 0; i < moved.vertices.size(); ++i)
+            note(moved.vertices[i], std::span(moved.values).subspan(3 * i, 3));
     }
-    for (size_t v = 0; v < part.vertices.size(); ++v) {
-        glm::dvec3& normal = part.vertices[v].normal;
-        if (normal == glm::dvec3(0)) normal = unitOrZero(sums[v]);
-        if (normal == glm::dvec3(0)) normal = {0, 0, 1}; // of no triangle with an area
+    for (size_t v = 0, i = 0; v < mesh.vertices.influenceEnds.size(); ++v) {
+        for (; i < mesh.vertices.influenceEnds[v]; ++i) note(v, {&mesh.vertices.influences[i].weight, 1});
     }
+    const size_t dropped = std::erase_if(mesh.triangles, [&](const auto& triangle) {
+        return std::ranges::any_of(triangle, [&](uint32_t v) { return bad[v]; });
+    });
+    if (dropped > 0) warnings_.add("Dropped a triangle with a vertex that is not finite.", dropped);
+    splitSeams(mesh, material.normalTexture);
+    return mesh;
 }
 
 } // namespace scene::gltf

@@ -1,42 +1,19 @@
 #pragma once
-// One primitive at one place: read, posed and brought into the world, before it joins the scene.
+// Reads a primitive of a mesh: at once into the world where nothing moves it, or as it lies in the file.
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "engine/scene/gltf_accessor.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/mesh.h"
 
 namespace scene::gltf
 {
-
-struct Vertex {
-    glm::dvec3 position = {0, 0, 0};   // world
-    glm::dvec3 normal = {0, 0, 0};     // unit; zero until one is found
-    glm::dvec4 tangent = {0, 0, 0, 0}; // unit, handedness; zero until one is found
-    std::array<glm::vec2, 2> uv = {};  // by set
-    glm::vec4 color = {1, 1, 1, 1};
-    bool mirrored = false; // by its transform: the winding turns
-};
-
-struct MeshPart {
-    std::vector<Vertex> vertices;
-    std::vector<std::array<uint32_t, 3>> triangles; // counter-clockwise from the front
-    std::array<bool, 2> hasUv = {};
-    bool hasTangents = false;
-    bool hasColors = false;
-};
-
-// Where a mesh stands, and its pose.
-struct Placement {
-    glm::dmat4 worldFromMesh = glm::dmat4(1);
-    std::vector<glm::dmat4> worldFromSkin; // by joint; empty: rigid
-    const std::vector<double>* morphWeights = nullptr;
-};
 
 class MeshPartReader
 {
@@ -48,19 +25,23 @@ class MeshPartReader
     MeshPart read(const tinygltf::Primitive& primitive, const std::string& where, const Placement& placement,
                   const Material& material);
 
+    // The same in its own space, with all its morph targets, for poses to come. `jointCount` is that of its skin; 0: it
+    // has none. Mirror seams are split. Throws Error also where more is asked for than fits.
+    Mesh readMesh(const tinygltf::Primitive& primitive, const std::string& where, size_t jointCount,
+                  const Material& material);
+
     const Accessor& accessor(int index); // opened once
 
   private:
-    struct Attribute; // base and weighted morph targets
+    struct Source; // the accessors of a primitive
 
-    Attribute attribute(const tinygltf::Primitive& primitive, const std::string& name,
-                        const std::vector<double>* weights);
+    Source open(const tinygltf::Primitive& primitive, const std::string& where, size_t jointCount,
+                const Material& material);
     std::vector<std::array<uint32_t, 3>> readTriangles(const tinygltf::Primitive& primitive, size_t vertexCount,
                                                        const std::string& where);
-    glm::dmat4 skinTransform(const tinygltf::Primitive& primitive, uint32_t element, const std::string& where,
-                             const Placement& placement);
-    void readVertices(const tinygltf::Primitive& primitive, const std::string& where, const Placement& placement,
-                      const std::vector<uint32_t>& elements, MeshPart& part);
+    std::vector<uint32_t> usedElements(std::vector<std::array<uint32_t, 3>>& triangles, size_t elementCount, bool flat);
+    MeshVertices gather(const Source& source, std::span<const uint32_t> elements, std::span<const double> weights);
+    void gatherInfluences(const Source& source, std::span<const uint32_t> elements, MeshVertices& vertices);
 
     const Document& document_;
     Warnings& warnings_;
@@ -68,12 +49,7 @@ class MeshPartReader
     // For shared vertices: the part's vertex for an element, valid where the stamp is that of this part.
     std::vector<uint32_t> vertexOf_, stampOf_;
     uint32_t stamp_ = 0;
+    uint64_t displacements_ = 0; // that readMesh() has read so far, by vertex and target
 };
-
-// Fills in what is missing: normals from the triangles (flat where vertices are not shared).
-void completeNormals(MeshPart& part);
-
-// Tangents from the texture coordinates `use` sees, for vertices without one; vertices on a mirror seam are doubled.
-void completeTangents(MeshPart& part, const TextureUse& use);
 
 } // namespace scene::gltf

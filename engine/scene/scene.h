@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace scene
 {
 
 constexpr uint32_t NONE = 0xffffffffu;
+
+struct Motion; // engine/scene/motion.h
 
 enum class Wrap : uint32_t { Repeat, Clamp, Mirror };
 
@@ -129,6 +132,7 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras; // at least one after loading
     Environment environment;
+    std::shared_ptr<const Motion> motion;     // what moves, and how; none: nothing does
     std::vector<std::string> warnings;        // sentences for the person, in order
     std::vector<std::filesystem::path> files; // that belong to it beside its own: buffers and textures
 };

@@ -45,7 +45,21 @@ std::vector<File> gltf()
     file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
     file.json["nodes"].push_back({{"camera", 0}, {"rotation", {0, 0, 0, 1}}});
     file.json["scenes"][0]["nodes"].push_back(1);
-    return {bytesOf(file.text()), glb(file.text())};
+    const std::string still = file.text();
+
+    file.primitive()["targets"] = {{{"POSITION", file.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 0}, "VEC3")}}};
+    file.attributes()["JOINTS_0"] = file.accessor<uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4");
+    file.attributes()["WEIGHTS_0"] = file.accessor<uint8_t>({255, 0, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0}, "VEC4", true);
+    file.json["skins"] = {{{"joints", {1, 2}}}};
+    file.json["nodes"][0]["skin"] = 0;
+    file.json["nodes"].push_back({{"translation", {0, 0, 1}}});
+    file.json["scenes"][0]["nodes"].push_back(2);
+    file.animate({{"node", 0}, {"path", "weights"}}, {0, 1}, {0, 1}, "SCALAR");
+    file.animate({{"node", 1}, {"path", "rotation"}}, {0, 1}, {0, 0, 0, 1, 0, 1, 0, 0}, "VEC4");
+    file.animate({{"node", 2}, {"path", "scale"}}, {0, 2}, std::vector<float>(18, 1), "VEC3", "CUBICSPLINE");
+    file.animatePointer("/materials/0/emissiveFactor", {0, 1}, {0, 0, 0, 1, 2, 3}, "VEC3", "STEP");
+    file.animatePointer("/nodes/0/extensions/KHR_node_visibility/visible", {0, 0.5f}, {0, 1}, "SCALAR", "STEP");
+    return {bytesOf(still), glb(still), bytesOf(file.text())};
 }
 
 image::Image picture()

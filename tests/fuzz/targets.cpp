@@ -5,6 +5,7 @@
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/image/codecs.h"
 #include "engine/scene/gltf_loader.h"
+#include "engine/scene/motion.h"
 #include "engine/scene/scene_tables.h"
 #include "passes/camera_path.h"
 #include "passes/checkpoint.h"
@@ -13,6 +14,7 @@
 #include "tests/support/program.h"
 #include "ui/window/window_memory.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fuzz
@@ -45,14 +47,27 @@ scene::Scene load(Bytes bytes)
     return scene::loadGltf(folder / "scene.gltf");
 }
 
-void gltf(Bytes bytes)
+void checkScene(const scene::Scene& scene)
 {
-    const scene::Scene scene = load(bytes);
     for (const glm::vec3& position : scene.positions) CHECK(finite(position));
     CHECK(!scene.cameras.empty());
     for (const scene::Camera& camera : scene.cameras) checkCamera(camera);
     const scene::SceneTables tables = scene::makeSceneTables(scene, uint64_t{1} << 27);
     CHECK(std::isfinite(tables.lengthScale) && std::isfinite(tables.radianceScale));
+}
+
+// At rest, and moved by each animation that can be played.
+void gltf(Bytes bytes)
+{
+    scene::Scene scene = load(bytes);
+    checkScene(scene);
+    const size_t animations = scene.motion ? scene.motion->animations.size() : 0;
+    for (uint32_t i = 0; i < std::min<size_t>(animations, 4); ++i) {
+        for (const double part : {0.0, 0.4, 1.0}) {
+            scene::pose(scene, std::vector{i}, part * scene.motion->animations[i].seconds);
+            checkScene(scene);
+        }
+    }
 }
 
 void png(Bytes bytes)

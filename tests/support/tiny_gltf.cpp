@@ -49,6 +49,23 @@ int TinyGltf::texture(const std::vector<uint32_t>& pixels)
     return int(json["textures"].size()) - 1;
 }
 
+void TinyGltf::animate(const nlohmann::json& target, const std::vector<float>& times, const std::vector<float>& values,
+                       const std::string& type, const std::string& interpolation)
+{
+    nlohmann::json& animation = json["animations"][0];
+    animation["samplers"].push_back(
+        {{"input", accessor(times, "SCALAR")}, {"output", accessor(values, type)}, {"interpolation", interpolation}});
+    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1}, {"target", target}});
+}
+
+void TinyGltf::animatePointer(const std::string& pointer, const std::vector<float>& times,
+                              const std::vector<float>& values, const std::string& type,
+                              const std::string& interpolation)
+{
+    animate({{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}, times, values,
+            type, interpolation);
+}
+
 nlohmann::json& TinyGltf::material()
 {
     primitive()["material"] = 0;

@@ -45,6 +45,14 @@ class TinyGltf
     // A texture of its own image of 2 x 2 pixels, row by row from the top, each 0xrrggbb; its index.
     int texture(const std::vector<uint32_t>& pixels);
 
+    // A channel of the first animation: {{"node", 0}, {"path", "translation"}} has these values, of `type`, at these
+    // times.
+    void animate(const nlohmann::json& target, const std::vector<float>& times, const std::vector<float>& values,
+                 const std::string& type, const std::string& interpolation = "LINEAR");
+    // The same by KHR_animation_pointer.
+    void animatePointer(const std::string& pointer, const std::vector<float>& times, const std::vector<float>& values,
+                        const std::string& type, const std::string& interpolation = "LINEAR");
+
     nlohmann::json& primitive() { return json["meshes"][0]["primitives"][0]; }
     nlohmann::json& attributes() { return primitive()["attributes"]; }
     nlohmann::json& material(); // of the triangle; made on first use

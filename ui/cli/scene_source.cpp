@@ -4,7 +4,9 @@
 #include "engine/base/files.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/gltf_loader.h"
+#include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
+#include "ui/cli/number_range.h"
 
 #include <cstdio>
 
@@ -29,10 +31,41 @@ scene::Scene load(const SceneSource& source, bool sky, const LoadProgress& progr
     }
     if (!isGltf(source.name))
         throw Error("There is no scene \"{}\": it is neither a .gltf or .glb file nor one of: {}.", source.name, names);
-    return scene::loadGltf(source.name, {.progress = progress, .sky = sky, .assetRoot = source.assetRoot});
+    return scene::loadGltf(
+        source.name,
+        {.progress = progress, .sky = sky, .animations = source.animation != "off", .assetRoot = source.assetRoot});
+}
+
+void animate(scene::Scene& scene, const SceneSource& source)
+{
+    const size_t count = scene.motion ? scene.motion->animations.size() : 0;
+    if (!source.time && source.animation.empty()) {
+        if (count > 0)
+            scene.warnings.push_back(
+                fmt::format("The scene has {} animation{} and is shown at rest: --time SECONDS shows it in motion.",
+                            count, count == 1 ? "" : "s"));
+        return;
+    }
+    const std::vector<uint32_t> chosen =
+        scene::chooseAnimations(scene, source.animation.empty() ? "all" : source.animation);
+    if (chosen.empty() && source.animation != "off")
+        scene.warnings.push_back("The scene has no animation: it is the same at every --time.");
+    if (chosen.empty()) return;
+    if (scene::contested(*scene.motion, chosen))
+        scene.warnings.push_back("Several animations move the same things, and the first of them does: choose another "
+                                 "with --animation NAME.");
+    scene::pose(scene, chosen, source.time.value_or(0));
 }
 
 } // namespace
+
+std::vector<std::pair<std::string, std::string>> SceneSource::toText() const
+{
+    std::vector<std::pair<std::string, std::string>> text;
+    if (time) text.emplace_back("time", fmt::format("{}", *time));
+    if (!animation.empty()) text.emplace_back("animation", animation);
+    return text;
+}
 
 CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::string& doc)
 {
@@ -41,12 +74,26 @@ CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::stri
            "The scene's buffers and textures may lie anywhere below this directory, as in \"../textures/x.png\"; "
            "without it, only below the scene's own folder. Others are refused, and links that lead to others.")
         ->option_text("DIR");
+    app.add_option(
+           "--time", source.time,
+           "Shows an animated scene as it is at this time, held still; before the first key and after the last "
+           "it rests there. Without it, and without --animation, the scene is in the pose that its nodes state.")
+        ->option_text("0 to 1e6 s (at rest)")
+        ->check(within(0.0, 1e6))
+        ->group("Animation");
+    app.add_option(
+           "--animation", source.animation,
+           "Which animations --time (0 s, where it is not given) plays; info SCENE lists them. Where several move "
+           "the same thing, the first does. off: they are not read at all, whatever is wrong with them.")
+        ->option_text("NAME|INDEX|all|off (all)")
+        ->group("Animation");
     return app.add_option("SCENE", source.name, doc);
 }
 
 scene::Scene openScene(const SceneSource& source, const passes::Settings& settings, const LoadProgress& progress)
 {
     scene::Scene scene = load(source, settings.environment.empty(), progress);
+    animate(scene, source);
     scene::setEnvironment(scene, settings.environment, settings.environmentScale);
     return scene;
 }

@@ -98,6 +98,7 @@ std::string ConvergeCommand::keyOf(const ConvergeReport& report, const passes::R
                                       version(),
                                       fmt::format("{} {}", precision.error, precision.maxFrames),
                                       fmt::format("{} {}", limits.frames, limits.seconds)};
+    for (const auto& [name, value] : scene.toText()) facts.insert(facts.end(), {name, value});
     for (const auto& [name, value] : motion.toText()) facts.insert(facts.end(), {name, value, stampOf(value)});
     for (const passes::NamedMethod& method : report.methods) facts.push_back(method.name + " " + hash(method.settings));
     uint64_t state = 0;
@@ -154,6 +155,7 @@ int ConvergeCommand::run() const
                          .device = gpu.adapter().name,
                          .driver = gpu.adapter().driver,
                          .settings = passes::toText(wanted)};
+    for (const auto& fact : scene.toText()) report.provenance.settings.push_back(fact);
     for (const auto& fact : motion.toText()) report.provenance.settings.push_back(fact);
     for (const passes::NamedMethod& method : report.methods)
         report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));

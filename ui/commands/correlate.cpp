@@ -125,6 +125,7 @@ int CorrelateCommand::run() const
         {"scene", scene.name}, {"device", gpu.adapter().name}, {"version", version()}};
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
+    for (const auto& fact : scene.toText()) facts.push_back(fact);
     for (const auto& fact : motion.toText()) facts.push_back(fact);
     for (const passes::NamedMethod& method : list)
         facts.emplace_back("method " + method.name, passes::hash(method.settings));

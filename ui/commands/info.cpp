@@ -1,6 +1,7 @@
 // info [SCENE]: devices; the built-in scenes; or what a scene holds and what is compiled for it.
 
 #include "engine/base/json.h"
+#include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
 #include "passes/renderer.h"
 #include "passes/variant.h"
@@ -15,7 +16,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 namespace ui
@@ -103,6 +106,49 @@ Json variantJson(const std::map<std::string, std::string>& variant)
     return list;
 }
 
+// What an animation moves: how many objects by property.
+Json animationJson(const scene::Motion& motion, const scene::Animation& animation)
+{
+    std::map<scene::Property, uint64_t> counts;
+    uint64_t keys = 0;
+    for (const scene::Channel& channel : animation.channels) {
+        ++counts[channel.property];
+        keys += motion.numbers[channel.times].size();
+    }
+    Json moves = Json::object();
+    for (const auto& [property, count] : counts) moves[scene::factsOf(property).words] = count;
+    Json json = {{"name", animation.name}, {"seconds", animation.seconds}, {"keys", keys}, {"moves", moves}};
+    if (!animation.fault.empty()) json["fault"] = animation.fault;
+    return json;
+}
+
+// Meshes that keep their shape, those that a skin or morph targets deform, and what that takes on the host.
+Json motionJson(const scene::Motion& motion)
+{
+    Json animations = Json::array();
+    for (const scene::Animation& animation : motion.animations) animations.push_back(animationJson(motion, animation));
+    uint64_t rigid = 0, triangles = 0, joints = 0, targets = 0;
+    for (const scene::Motion::Part& part : motion.parts) {
+        const scene::Mesh& mesh = motion.meshes[part.mesh];
+        triangles += mesh.triangles.size();
+        rigid += part.skin == scene::NONE && mesh.vertices.targets.empty();
+    }
+    for (const scene::Motion::Skin& skin : motion.skins) joints += skin.joints.size();
+    for (const scene::Mesh& mesh : motion.meshes) targets += mesh.vertices.targets.size();
+    return {{"animations", animations},
+            {"rigid_parts", rigid},
+            {"deforming_parts", motion.parts.size() - rigid},
+            {"triangles", triangles},
+            {"nodes", motion.nodes.size()},
+            {"skins", motion.skins.size()},
+            {"joints", joints},
+            {"morph_targets", targets},
+            {"lights", motion.lights.size()},
+            {"cameras", motion.cameras.size()},
+            {"materials", motion.paints.size()},
+            {"host_bytes", motion.bytes()}};
+}
+
 Json sceneJson(const std::string& name, const scene::Scene& world, const passes::RenderStats& stats)
 {
     Json cameras = Json::array();
@@ -133,7 +179,32 @@ Json sceneJson(const std::string& name, const scene::Scene& world, const passes:
             {"reservoir_bytes_per_pixel", stats.reservoirBytes},
             {"memory_bytes", stats.memoryBytes},
             {"variant", variantJson(stats.variant)},
+            {"motion", world.motion ? motionJson(*world.motion) : Json(nullptr)},
             {"warnings", world.warnings}};
+}
+
+void printMotion(const Json& motion)
+{
+    size_t index = 0;
+    for (const Json& animation : motion["animations"]) {
+        std::string moves;
+        for (const auto& [words, count] : animation["moves"].items())
+            moves += fmt::format("{}{} of {}", moves.empty() ? "" : ", ", words, count.get<uint64_t>());
+        fmt::print("Animation {} \"{}\": {:.3f} s, {} keys; {}\n", index++, animation["name"].get<std::string>(),
+                   animation["seconds"].get<double>(), animation["keys"].get<uint64_t>(),
+                   animation.contains("fault") ? "cannot be played: " + animation["fault"].get<std::string>()
+                   : moves.empty()             ? "moves nothing"
+                                               : "moves " + moves);
+    }
+    std::string text;
+    for (const char* what : {"rigid_parts", "deforming_parts", "triangles", "nodes", "skins", "joints", "morph_targets",
+                             "lights", "cameras", "materials"}) {
+        std::string words = what;
+        std::ranges::replace(words, '_', ' ');
+        if (motion[what] != 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", motion[what].get<uint64_t>(), words);
+    }
+    fmt::print("Can move: {}; {} on the host\n", text.empty() ? "nothing" : text, megabytes(motion["host_bytes"]));
 }
 
 void printScene(const Json& scene, const passes::Settings& settings)
@@ -146,6 +217,7 @@ void printScene(const Json& scene, const passes::Settings& settings)
     for (const auto& [kind, count] : scene["lights"].items())
         if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
     fmt::print("Lights: {}\nCameras: {}\n", lights, jsonText(scene["cameras"]));
+    if (!scene["motion"].is_null()) printMotion(scene["motion"]);
     fmt::print("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s\n",
                bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
                bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>());

@@ -77,7 +77,8 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
 int RenderCommand::run()
 {
     const auto commandStart = Clock::now();
-    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = motion.toText()};
+    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = scene.toText()};
+    for (auto& fact : motion.toText()) report.extra.push_back(std::move(fact));
     motion.adjust(report.settings, settings);
     NamedFiles named;
     named.writes("--output", output);

@@ -24,6 +24,8 @@ struct ViewCommand {
         window.order.settings = settings.read();
         window.order.scene = scene.name;
         window.order.assetRoot = scene.assetRoot;
+        window.order.time = scene.time;
+        window.order.animation = scene.animation;
         NamedFiles files;
         files.writes("--report", window.report);
         files.reads("--reference", window.reference);

@@ -10,6 +10,7 @@
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
 #include "passes/inspector.h"
+#include "ui/cli/scene_source.h"
 #include "ui/window/pose.h"
 
 namespace ui
@@ -39,6 +40,8 @@ struct StudyOrder {
 struct Order {
     std::string scene;                     // empty: nothing yet
     std::string assetRoot;                 // of scenes, as --asset-root
+    std::optional<double> time;            // of the scene, as --time
+    std::string animation;                 // of the scene, as --animation
     passes::Settings settings;             // of A
     std::optional<passes::Settings> rival; // of B; what says which picture (size, camera, environment) is A's
     std::optional<Pose> pose;              // empty: the camera that the settings name
@@ -50,6 +53,8 @@ struct Order {
     uint64_t steps = 0;    // how many single frames were asked for while paused
     bool operator==(const Order&) const = default;
 };
+
+SceneSource sourceOf(const Order& order);
 
 // As they are to run: with A's world, and with a part of the resolution while the camera moves.
 passes::Settings settingsOf(const Order& order, Side side);

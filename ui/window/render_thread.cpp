@@ -122,7 +122,8 @@ void RenderThread::closeDevice()
 bool RenderThread::sameWorld(const Order& order) const
 {
     const passes::Settings &next = order.settings, &now = running_.settings;
-    if (order.scene != running_.scene || passes::changeBetween(now, next) == passes::Change::Reload) return false;
+    if (sourceOf(order) != sourceOf(running_) || passes::changeBetween(now, next) == passes::Change::Reload)
+        return false;
     const auto parallel = [&](const std::string& name) { // what is compiled depends on it
         return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
     };
@@ -162,7 +163,7 @@ void RenderThread::load(const Order& order)
 {
     say("Loading the scene");
     auto world = std::make_unique<scene::Scene>(
-        openScene({order.scene, order.assetRoot}, order.settings, [&](const std::string& what, double fraction) {
+        openScene(sourceOf(order), order.settings, [&](const std::string& what, double fraction) {
             say(fmt::format("{}: {:.0f}%", what, 100 * fraction));
         }));
     say("Building the BVH");

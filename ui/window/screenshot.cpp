@@ -36,11 +36,12 @@ std::string takeScreenshot(const Shot& shot)
     report.settings.frames = uint32_t(shot.frames);
     report.settings.seconds = 0;
     report.settings.average = !shot.single;
+    report.extra = sourceOf(shot.order).toText();
     std::string camera;
     if (shot.order.pose) {
         camera = name + ".camera.json";
         writeText(camera, jsonText(toCameraPath(*shot.order.pose), 2) + "\n");
-        report.extra = {{"camera-path", camera}};
+        report.extra.emplace_back("camera-path", camera);
     }
     writeText(name + ".json", jsonText(passes::toJson(report.settings), 2) + "\n");
     image::write(name + ".png", shot.picture, metadataOf(report));
@@ -49,6 +50,7 @@ std::string takeScreenshot(const Shot& shot)
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
                                    shellQuoted(shot.order.scene), name, name, shellQuoted(shot.adapter.name));
     if (!shot.order.assetRoot.empty()) line += " --asset-root " + shellQuoted(shot.order.assetRoot);
+    for (const auto& [option, value] : sourceOf(shot.order).toText()) line += " --" + option + " " + shellQuoted(value);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

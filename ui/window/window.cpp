@@ -107,6 +107,8 @@ class Window
             loadReference(file);
         } else {
             state_.order.scene = file;
+            state_.order.time.reset();
+            state_.order.animation.clear();
             state_.order.pose.reset();
             state_.order.settings.camera.clear();
         }

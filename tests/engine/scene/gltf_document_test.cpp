@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/scene/gltf_uri.h"
+#include "engine/scene/motion.h"
 #include "tests/support/tiny_gltf.h"
 
 namespace scene
@@ -33,15 +34,19 @@ TEST(GltfDocument, IgnoredExtensionsAreNamed)
         EXPECT_EQ(warning.find("KHR_materials_ior"), std::string::npos) << warning;
 }
 
-TEST(GltfDocument, AnimationsAreIgnoredAndSaid)
+TEST(GltfDocument, AnimationsLeaveTheScenesPoseAsTheNodesStateIt)
 {
     TinyGltf file;
-    file.json["animations"] = {{{"samplers",
-                                 {{{"input", file.accessor<float>({0, 1}, "SCALAR")},
-                                   {"output", file.accessor<float>({0, 0, 0, 9, 9, 9}, "VEC3")}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
-    EXPECT_TRUE(file.warns("Ignored 1 animation: the scene is shown in its default pose."));
-    EXPECT_NEAR(file.load().origin.x, 0.5, 1e-6);
+    const Scene still = file.load();
+    EXPECT_EQ(still.motion, nullptr);
+    file.animate({{"node", 0}, {"path", "translation"}}, {0, 1}, {0, 0, 0, 9, 9, 9}, "VEC3");
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.origin, still.origin);
+    EXPECT_EQ(scene.positions, still.positions);
+    EXPECT_EQ(scene.warnings, still.warnings);
+    ASSERT_NE(scene.motion, nullptr);
+    EXPECT_EQ(scene.motion->animations.size(), 1u);
+    EXPECT_EQ(file.load({.animations = false}).motion, nullptr);
 }
 
 TEST(GltfDocument, ErrorsNameTheObjectAndTheValue)

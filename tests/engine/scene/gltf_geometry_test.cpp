@@ -1,4 +1,4 @@
-// Covers engine/scene/gltf_accessor.cpp, engine/scene/gltf_mesh_part.cpp, engine/scene/gltf_tangents.cpp.
+// Covers engine/scene/gltf_accessor.cpp, engine/scene/gltf_mesh_part.cpp, engine/scene/mesh_tangents.cpp.
 
 #include <cmath>
 #include <numbers>

@@ -4,6 +4,7 @@
 #include "ui/window/render_thread.h"
 
 #include "engine/gpu/vulkan.h"
+#include "tests/support/tiny_gltf.h"
 
 #include <atomic>
 #include <chrono>
@@ -106,6 +107,31 @@ TEST(RenderThread, APictureThatIsTooLargeChangesNothing)
     EXPECT_EQ(back, order);
     const uint64_t frames = thread.shot(ui::A)->frames;
     EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->frames > frames; }));
+}
+
+// The pose is a part of the scene: another time is loaded, and a film of the other pose begins.
+TEST(RenderThread, AnotherTimeShowsAnotherPose)
+{
+    lost = false;
+    TinyGltf file;
+    file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.json["nodes"].push_back({{"camera", 0}, {"translation", {0.4, 0.4, 2}}});
+    file.json["scenes"][0]["nodes"].push_back(1);
+    file.material()["emissiveFactor"] = {1, 1, 1};
+    file.animate({{"node", 0}, {"path", "translation"}}, {0, 2}, {0, 0, 0, 9, 0, 0}, "VEC3");
+    file.load(); // writes it
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.scene = (file.folder / "tiny.gltf").string();
+    const auto middle = [&](std::optional<double> time) {
+        order.time = time;
+        thread.order(order);
+        EXPECT_TRUE(comes([&] { return thread.shot(ui::A) && thread.shot(ui::A)->order == order; }));
+        return thread.shot(ui::A)->picture.pixels.at(9 * 32 + 15);
+    };
+    EXPECT_EQ(middle(std::nullopt), glm::vec3(1));
+    EXPECT_EQ(middle(2), glm::vec3(0));
+    EXPECT_EQ(middle(0), glm::vec3(1));
 }
 
 // Each study says what is known otherwise: chains follow their law, RGB has no floor, the reference is the picture.

@@ -1,13 +1,14 @@
 // Tangents from texture coordinates, per vertex: the texture's u direction in the surface, weighted by the corner's
 // angle as in MikkTSpace (Mikkelsen 2008), which glTF names as its reference.
 
-#include "engine/scene/gltf_mesh_part.h"
-#include "engine/scene/gltf_values.h"
+#include "engine/scene/mesh.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace scene::gltf
+#include "engine/scene/placing.h"
+
+namespace scene
 {
 
 namespace
@@ -49,10 +50,10 @@ glm::dvec3 anyPerpendicular(const glm::dvec3& normal)
 
 } // namespace
 
-void completeTangents(MeshPart& part, const TextureUse& use)
+std::vector<uint32_t> completeTangents(MeshPart& part, const TextureUse& use, bool split)
 {
     const auto isMissing = [](const Vertex& vertex) { return vertex.tangent.w == 0; };
-    if (std::none_of(part.vertices.begin(), part.vertices.end(), isMissing)) return;
+    if (std::none_of(part.vertices.begin(), part.vertices.end(), isMissing)) return {};
 
     const auto uvOf = [&](const Vertex& vertex) {
         const glm::dvec3 uv(vertex.uv[use.uvSet], 1);
@@ -62,6 +63,7 @@ void completeTangents(MeshPart& part, const TextureUse& use)
     std::vector<int> sides(part.vertices.size(), 0);
     std::vector<uint32_t> twins(part.vertices.size(), NONE); // the copy of a vertex for the other side
     const size_t originalCount = part.vertices.size();
+    std::vector<uint32_t> originals; // of the copies
     for (auto& triangle : part.triangles) {
         std::array<glm::dvec3, 3> positions;
         std::array<glm::dvec2, 3> uvs;
@@ -74,11 +76,12 @@ void completeTangents(MeshPart& part, const TextureUse& use)
         for (size_t i = 0; i < 3; ++i) {
             uint32_t& corner = triangle[i];
             if (!isMissing(part.vertices[corner])) continue;
-            if (sides[corner] == -frame.side && corner < originalCount) {
+            if (split && sides[corner] == -frame.side && corner < originalCount) {
                 if (twins[corner] == NONE) {
                     twins[corner] = static_cast<uint32_t>(part.vertices.size());
                     const Vertex copy = part.vertices[corner];
                     part.vertices.push_back(copy);
+                    originals.push_back(corner);
                     sums.emplace_back(0);
                     sides.push_back(frame.side);
                 }
@@ -98,6 +101,7 @@ void completeTangents(MeshPart& part, const TextureUse& use)
         if (tangent == glm::dvec3(0)) tangent = anyPerpendicular(vertex.normal);
         vertex.tangent = {tangent, sides[v] < 0 ? -1 : 1};
     }
+    return originals;
 }
 
-} // namespace scene::gltf
+} // namespace scene
