@@ -212,9 +212,8 @@ std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& ch
     const std::vector<Animation>& animations = scene.motion ? scene.motion->animations : none;
     std::vector<uint32_t> chosen;
     const bool all = choice == "all";
-    for (uint32_t i = 0; i < animations.size(); ++i)
+    for (uint32_t i = 0; i < animations.size() && (all || chosen.empty()); ++i)
         if (all || animations[i].name == choice) chosen.push_back(i);
-    if (!all && chosen.size() > 1) chosen.resize(1);
     uint32_t index = 0;
     const auto end = choice.data() + choice.size();
     const auto [rest, problem] = std::from_chars(choice.data(), end, index);
