@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Is one build of the program slower than another? Both in turns, on one machine.
+
+  two_programs.py OLD NEW [--rounds N] [--only TEXT] [--options "..."]
+
+Each case is rendered by both programs, one after the other, N times over, so that what else the machine does meets both. Printed
+are medians of OLD's milliseconds a frame, of NEW's in the round, and of the quotient NEW : OLD of each round, with its quartiles;
+then the same of what a start takes, from the command to the first pixel.
+"""
+
+import argparse
+import json
+import pathlib
+import shlex
+import statistics
+import subprocess
+import tempfile
+
+MOVING = "--orbit 0.3"
+
+
+def cases():
+    """Name, options of `render`, frames. A frame's time is that of its stages."""
+    for scene in ["cornell", "hall", "lamps"]:
+        yield f"{scene} pt", f"{scene} --method pt --size 160x90", 16
+        for method in ["restir-pt", "rgb-restir"]:
+            yield f"{scene} {method} moving", f"{scene} --method {method} {MOVING} --size 160x90", 12
+    for method in ["pt", "restir-pt", "rgb-restir"]:
+        yield f"cornell {method} small", f"cornell --method {method} {MOVING} --size 32x18", 64
+
+
+def measure(program, options, frames, more):
+    """Milliseconds a frame, of all stages; seconds from start to first pixel."""
+    with tempfile.TemporaryDirectory() as folder:
+        stats = pathlib.Path(folder, "stats.json")
+        words = [program, "render", *shlex.split(options), *more, "--frames", str(frames), "--quiet"]
+        subprocess.run([*words, "-o", f"{folder}/picture.exr", "--stats", stats], check=True, capture_output=True)
+        found = json.loads(stats.read_text())
+    return 1e3 * found["wall_seconds"] / frames, found["first_pixel_seconds"]
+
+
+def row(name, unit, old, new):
+    ratios = [b / a for a, b in zip(old, new)]
+    low, middle, high = statistics.quantiles(ratios, n=4, method="inclusive") if len(ratios) > 1 else ratios * 3
+    print(f"{name:<28}{statistics.median(old):>10.2f}{statistics.median(new):>10.2f} {unit:<3}"
+          f"{middle:>8.3f} ({low:.3f} to {high:.3f})", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("old")
+    parser.add_argument("new")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--only", default="", help="cases whose names contain this")
+    parser.add_argument("--options", default="", help="more options of `render`, for both")
+    arguments = parser.parse_args()
+    more = shlex.split(arguments.options)
+    print(f"{'':<28}{'old':>10}{'new':>10}{'new : old':>13}")
+    for name, options, frames in cases():
+        if arguments.only not in name:
+            continue
+        rounds = []
+        for _ in range(arguments.rounds + 1):  # the first one fills caches
+            rounds.append([measure(program, options, frames, more) for program in (arguments.old, arguments.new)])
+        (old, old_start), (new, new_start) = [list(zip(*side)) for side in zip(*rounds[1:])]
+        row(name, "ms", old, new)
+        row("    start", "s", old_start, new_start)
+
+
+if __name__ == "__main__":
+    main()
