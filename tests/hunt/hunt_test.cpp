@@ -133,7 +133,7 @@ TEST(Verdict, FindsBiases)
 {
     constexpr size_t LEAST[] = {20, 15, 5}; // of 20, by law: their spreads are 0.5, 1 and 1.3
     for (const double truth : {0.7, 1.4})
-        for (const size_t law : {0, 1, 2}) {
+        for (size_t law = 0; law < std::size(LEAST); ++law) {
             Draw draw{5, law};
             size_t found = 0;
             for (int i = 0; i < 20; ++i) found += sequence(LAWS[law], LAWS[law], truth, draw) == Answer::Differ;
@@ -259,22 +259,28 @@ TEST(CaseFiles, HoldTheCase)
         size_t areas = 0;
         double size = 0;
         for (const glm::vec3& p : c.scene.positions) size = std::max(size, double(glm::length(p)));
-        std::vector<std::pair<scene::Material, glm::vec3>> expected, found;
-        for (const auto& [scene, list] : {std::pair(&c.scene, &expected), {&back.scene, &found}})
-            for (const scene::Triangle& t : scene->triangles) {
-                const auto corner = [&](size_t i) { return scene->positions[t.vertices[i]]; };
+        using Shown = std::pair<scene::Material, glm::vec3>; // and where its triangle begins
+        std::vector<Shown> expected, found;
+        const auto list = [&](const scene::Scene& of, std::vector<Shown>& shown) {
+            for (const scene::Triangle& t : of.triangles) {
+                const auto corner = [&](size_t i) { return of.positions[t.vertices[i]]; };
                 const glm::vec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
                 if (normal != glm::vec3(0))
-                    list->emplace_back(scene->materials[t.material], corner(0) + glm::vec3(scene->origin)), ++areas;
+                    shown.emplace_back(of.materials[t.material], corner(0) + glm::vec3(of.origin)), ++areas;
             }
+        };
+        list(c.scene, expected);
+        list(back.scene, found);
         ASSERT_EQ(found.size(), expected.size()) << c.describe();
-        for (const auto& [material, corner] : expected) {
-            const auto same = [&](const auto& other) {
+        for (const Shown& one : expected) {
+            const scene::Material& material = one.first;
+            const auto same = [&](const Shown& other) {
                 const scene::Material& m = other.first;
-                return double(glm::length(other.second - corner)) < 1e-6 * size && m.baseColor == material.baseColor &&
-                       m.roughness == material.roughness && m.metallic == material.metallic &&
-                       m.specular == material.specular && m.specularColor == material.specularColor &&
-                       m.ior == material.ior && m.transmission == material.transmission && m.thin == material.thin &&
+                return double(glm::length(other.second - one.second)) < 1e-6 * size &&
+                       m.baseColor == material.baseColor && m.roughness == material.roughness &&
+                       m.metallic == material.metallic && m.specular == material.specular &&
+                       m.specularColor == material.specularColor && m.ior == material.ior &&
+                       m.transmission == material.transmission && m.thin == material.thin &&
                        m.alpha == material.alpha && m.unlit == material.unlit &&
                        m.doubleSided == material.doubleSided &&
                        glm::length(m.emission - material.emission) <= 1e-6f * glm::length(material.emission) &&

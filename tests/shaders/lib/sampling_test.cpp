@@ -85,7 +85,7 @@ TEST_F(Sampling, CirclesAndAnglesAreExact)
 // 2^32 numbers shared out among 3 * 2^30 indices: with no more than 32 bits every third index had half of them.
 TEST_F(Sampling, PicksAmongManyAreEven)
 {
-    std::vector<double> counts(3 * BINS, 0);
+    std::vector<double> counts(size_t{3} * BINS, 0);
     for (const glm::vec4& s : sample(Pick))
         ++counts[size_t(int(s.x) * BINS + std::min(int(s.y * float(BINS)), BINS - 1))];
     const std::vector<double> expected(counts.size(), double{SAMPLES} / double(counts.size()));
