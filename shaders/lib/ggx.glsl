@@ -3,6 +3,7 @@
 #ifndef SHADERS_LIB_GGX_GLSL
 #define SHADERS_LIB_GGX_GLSL
 
+#include "lib/lanes.glsl"
 #include "lib/sampling.glsl"
 
 // D(h); Walter et al. 2007, Eq. 33.
@@ -34,8 +35,7 @@ vec3 sampleVisibleNormal(vec3 wo, float a, vec2 u)
 
 float schlickWeight(float c)
 {
-    float x = 1.0 - c;
-    x = x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x; // clamp() would make a number of NaN
+    float x = within(1.0 - c, 0.0, 1.0);
     float x2 = x * x;
     return x2 * x2 * x;
 }

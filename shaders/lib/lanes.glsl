@@ -56,6 +56,9 @@ uvec4 rowOf(vec3 color) { return uvec4(floatBitsToUint(color), 0u); }
 #define LESSER(X, Y) (X) < (Y) ? (X) : (Y)
 #define GREATER(X, Y) (X) > (Y) ? (X) : (Y)
 
+// clamp(), but NaN stays NaN, so that it is counted where it arrives: clamp() makes a number of it.
+float within(float x, float low, float high) { return x < low ? low : x > high ? high : x; }
+
 // a + b, where a is the larger, and what rounding takes from it (Kahan). Compilers must neither fuse nor reorder: `precise`.
 float sumOf(float a, float b, out float roundedOff)
 {

@@ -116,7 +116,7 @@ LightSample sampleLight(uvec4 random, Surface s)
         float c = dot(g.areaNormal, l.direction) / twiceArea;
         bool front = c < 0.0;
         l.normal = (front ? g.areaNormal : -g.areaNormal) / twiceArea;
-        if (squared > 0.0 && c != 0.0) {
+        if (squared != 0.0 && c != 0.0) { // NaN goes on
             l.pdf *= squared / (0.5 * twiceArea * abs(c));
             uint row = item * scene.attributeRows;
             uint material = materialRow(g.material);
@@ -134,9 +134,9 @@ LightSample sampleLight(uvec4 random, Surface s)
         float squared = dot(d, d);
         l.direction = d * inversesqrt(max(squared, SMALLEST_SQUARE));
         vec3 chord = l.direction + axis; // half its square is 1 - cos of the angle to the axis
-        float x = clamp((head.w - 0.5 * dot(chord, chord)) * intensity.w, 0.0, 1.0);
+        float x = within((head.w - 0.5 * dot(chord, chord)) * intensity.w, 0.0, 1.0);
         float spot = intensity.w > 0.0 ? x * x : 1.0;
-        if (squared > 0.0) l.radiance = intensity.rgb * (spot / squared);
+        if (squared != 0.0) l.radiance = intensity.rgb * (spot / squared);
         l.dirac = true;
     }
     if (HAS_DIRECTIONAL && kind == LIGHT_DIRECTIONAL) {

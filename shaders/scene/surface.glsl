@@ -213,7 +213,7 @@ vec3 shadingNormal(uint material, uvec4 packed, vec2 barycentric, Coordinates at
     float handedness = (at.tangents.x & 1u) != 0u ? -1.0 : 1.0;
     vec3 candidate = tangent * bent.x + cross(normal, tangent) * handedness * bent.y + normal * bent.z;
     float squared = dot(candidate, candidate);
-    return squared > 1e-12 ? candidate * inversesqrt(squared) : normal; // a map that decodes to nothing bends nothing
+    return squared <= 1e-12 ? normal : candidate * inversesqrt(squared); // a map that decodes to nothing bends nothing
 }
 
 Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)

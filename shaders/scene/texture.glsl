@@ -50,8 +50,8 @@ vec4 sampleTexture(uint use, vec2 uv0, vec2 uv1)
 
     // Whole double tiles first (a mirrored texture repeats after two), so that large coordinates keep their fraction.
     vec2 tile = uv - 2.0 * floor(0.5 * uv);
-    if (wrapU == 1u) tile.x = clamp(uv.x, -1.0, 2.0);
-    if (wrapV == 1u) tile.y = clamp(uv.y, -1.0, 2.0);
+    if (wrapU == 1u) tile.x = within(uv.x, -1.0, 2.0);
+    if (wrapV == 1u) tile.y = within(uv.y, -1.0, 2.0);
     vec2 p = tile * vec2(size) - (nearest ? 0.0 : 0.5);
     vec2 corner = floor(p);
     vec2 f = nearest ? vec2(0.0) : p - corner;
