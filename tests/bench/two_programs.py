@@ -3,9 +3,10 @@
 
   two_programs.py OLD NEW [--rounds N] [--only TEXT] [--options "..."]
 
-Each case is rendered by both programs, one after the other, N times over, so that what else the machine does meets both. Printed
-are medians of OLD's milliseconds a frame, of NEW's in the round, and of the quotient NEW : OLD of each round, with its quartiles;
-then the same of what a start takes, from the command to the first pixel.
+Each case is rendered by both programs, one after the other, N times over, so that what else the machine does meets both. A frame's
+time is the difference of a long and a short render, divided by the frames that the long one has more: what compiles when stages
+first run is in both. Printed are medians of OLD's and of NEW's milliseconds a frame and of the quotient NEW : OLD, with its
+quartiles; then the same of what a start takes, from the command to the first pixel.
 """
 
 import argparse
@@ -19,24 +20,33 @@ import tempfile
 MOVING = "--orbit 0.3"
 
 
+FEW = 3  # frames of the short render: all stages have run by then
+
+
 def cases():
-    """Name, options of `render`, frames. A frame's time is that of its stages."""
+    """Name, options of `render`, and how many frames more the long render has."""
     for scene in ["cornell", "hall", "lamps"]:
-        yield f"{scene} pt", f"{scene} --method pt --size 160x90", 16
+        yield f"{scene} pt", f"{scene} --method pt --size 160x90", 100
         for method in ["restir-pt", "rgb-restir"]:
-            yield f"{scene} {method} moving", f"{scene} --method {method} {MOVING} --size 160x90", 12
-    for method in ["pt", "restir-pt", "rgb-restir"]:
-        yield f"cornell {method} small", f"cornell --method {method} {MOVING} --size 32x18", 64
+            yield f"{scene} {method} moving", f"{scene} --method {method} {MOVING} --size 160x90", 30
+    for method, frames in [("pt", 2000), ("restir-pt", 400), ("rgb-restir", 400)]:
+        yield f"cornell {method} small", f"cornell --method {method} {MOVING} --size 32x18", frames
 
 
-def measure(program, options, frames, more):
-    """Milliseconds a frame, of all stages; seconds from start to first pixel."""
+def render(program, options, more, frames):
+    """Seconds of rendering, and from the start to the first pixel."""
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder, "stats.json")
         words = [program, "render", *shlex.split(options), *more, "--frames", str(frames), "--quiet"]
         subprocess.run([*words, "-o", f"{folder}/picture.exr", "--stats", stats], check=True, capture_output=True)
         found = json.loads(stats.read_text())
-    return 1e3 * found["wall_seconds"] / frames, found["first_pixel_seconds"]
+    return found["wall_seconds"], found["first_pixel_seconds"]
+
+
+def measure(program, options, frames, more):
+    """Milliseconds a frame; seconds from the start to the first pixel."""
+    short, start = render(program, options, more, FEW)
+    return 1e3 * (render(program, options, more, FEW + frames)[0] - short) / frames, start
 
 
 def row(name, unit, old, new):

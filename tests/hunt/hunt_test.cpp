@@ -175,7 +175,6 @@ TEST(Cases, AreTheSameAgain)
     }
 }
 
-// Scenes of a session need the same features, so that they share compiled stages.
 TEST(Cases, HaveTheSettingsThatAreWanted)
 {
     const Wanted wanted{.kind = "things", .truth = "pt", .settings = {{"method", "restir-pt"}, {"temporal", "on"}}};
@@ -188,6 +187,7 @@ TEST(Cases, HaveTheSettingsThatAreWanted)
     EXPECT_THROW(Session(5, 0, {.settings = {{"shape", "round"}}}), Error);
 }
 
+// Scenes of a session need the same features, so that they share compiled stages.
 TEST(Cases, OfASessionCompileOnce)
 {
     for (uint64_t index = 0; index < 60; ++index) {
