@@ -11,14 +11,18 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
     const Variant variant = scene.variant(settings);
     Variant sameView = variant; // shifts between the two frames are identities, and left out
     sameView.SAME_VIEW = true;
+    Variant moved = variant;
+    moved.BETWEEN_WORLDS = true;
 
     FramePlan plan = {{"primary", variant, pixels, [](const FrameState& frame) { return !frame.hitsKnown; }}};
     if (settings.method == Method::Pt) {
         plan.push_back({"path_trace", variant, pixels});
     } else {
         plan.push_back({"canonical", variant, pixels});
-        plan.push_back({"temporal", variant, pixels, [](const FrameState& f) { return f.history && !f.sameView; }});
-        plan.push_back({"temporal", sameView, pixels, [](const FrameState& f) { return f.history && f.sameView; }});
+        using Frame = const FrameState&;
+        plan.push_back({"temporal", variant, pixels, [](Frame f) { return f.history && !f.sameView && !f.moved; }});
+        plan.push_back({"temporal", sameView, pixels, [](Frame f) { return f.history && f.sameView; }});
+        plan.push_back({"temporal", moved, pixels, [](Frame f) { return f.history && f.moved; }});
         if (settings.spatial > 0) plan.push_back({"spatial_trace", variant, slots});
         plan.push_back({"spatial_gather", variant, pixels});
     }
@@ -30,7 +34,9 @@ StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, b
 {
     StageList stages;
     for (const Settings& settings : list) {
-        const FrameState frame{.history = settings.temporal, .sameView = !cameraMoves && scene.viewRepeats(settings)};
+        const FrameState frame{.history = settings.temporal,
+                               .sameView = !cameraMoves && !scene.moves() && scene.viewRepeats(settings),
+                               .moved = scene.moves()};
         for (const PlannedStage& stage : framePlan(scene, settings, 1))
             if (stage.runs(frame)) stages.emplace_back(stage.shader, stage.variant);
     }

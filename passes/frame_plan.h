@@ -17,6 +17,7 @@ struct FrameState {
     bool hitsKnown = false; // all its rays are those of a frame before: what they hit is stored
     bool history = false;   // there are reservoirs of the frame before, to be reused
     bool sameView = false;  // each pixel sees what it saw in that frame
+    bool moved = false;     // the scene has moved since that frame
 };
 
 struct PlannedStage {

@@ -52,21 +52,23 @@ uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
                    const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs,
-                   std::shared_ptr<PipelinePool> pipelines)
+                   std::shared_ptr<PipelinePool> pipelines, bool moves)
     : device_(device), settings_(settings), runs_(runs)
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     createBuffers(); // first: a picture too large for the device is said so before a long build
     scene_ =
-        std::make_shared<const SceneOnDevice>(device, scene, camera, featureSet, bvhProgress, std::move(pipelines));
+        std::make_shared<SceneOnDevice>(device, scene, camera, featureSet, bvhProgress, std::move(pipelines), moves);
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
     createStages();
 }
 
 Renderer::Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs)
-    : device_(sibling.device_), settings_(settings), runs_(runs), scene_(sibling.scene_)
+    : device_(sibling.device_), settings_(settings), runs_(runs), scene_(sibling.scene_),
+      hasPose_(!sibling.scene_->moves())
 {
+    if (!hasPose_) scene_ = std::make_shared<SceneOnDevice>(*sibling.scene_);
     CHECK(settings.environment == sibling.settings_.environment);
     CHECK(settings.environmentScale == sibling.settings_.environmentScale);
     createBuffers();
@@ -178,9 +180,12 @@ void Renderer::renderFrame()
 {
     frame_.frame = uint32_t(frameCount_);
     frame_.previousSlice = frame_.slice;
+    CHECK(hasPose_);
+    const bool moved = frame_.world != lastWorld_;
     const FrameState state{.hitsKnown = seesTheSame(hitsFrom_),
                            .history = settings_.temporal && historyFrames_ > 0,
-                           .sameView = seesTheSame(frame_.previousCamera)};
+                           .sameView = !moved && seesTheSame(frame_.previousCamera),
+                           .moved = moved};
     if (!state.hitsKnown) frame_.slice = 1 - frame_.slice;
     hitsFrom_ = frame_.camera;
     device_.queue().writeValue(frameUniform_, frame_);
@@ -192,6 +197,7 @@ void Renderer::renderFrame()
     encodeFrame(encoder, state);
     inFlight_.push_back(device_.queue().submit(std::move(encoder)));
     frame_.previousCamera = frame_.camera;
+    lastWorld_ = frame_.world;
     ++frameCount_;
     ++historyFrames_;
     if (inFlight_.size() > 2) finishOldest();
@@ -203,6 +209,7 @@ void Renderer::reset()
     frameCount_ = 0;
     historyFrames_ = 0;
     frame_.previousCamera = frame_.camera;
+    lastWorld_ = frame_.world;
     milliseconds_.clear();
     timedFrames_ = 0;
 }
@@ -210,6 +217,17 @@ void Renderer::reset()
 void Renderer::setCamera(const scene::Camera& camera)
 {
     frame_.camera = scene_->uniformOf(camera, double(settings_.width) / double(settings_.height));
+}
+
+void Renderer::setScene(const scene::Scene& posed, double seconds)
+{
+    CHECK(scene_->moves());
+    if (sceneSeconds_ == seconds) return;
+    frame_.world = 1 - lastWorld_; // the other one belongs to the last frame, and may be asked once more
+    scene_->show(frame_.world, posed);
+    sceneSeconds_ = seconds;
+    hasPose_ = true;
+    hitsFrom_.reset();
 }
 
 void Renderer::wait()
@@ -327,6 +345,7 @@ void Renderer::restore(const RendererState& state)
     historyFrames_ = state.historyFrames;
     frame_.camera = state.camera;
     frame_.previousCamera = state.previousCamera;
+    lastWorld_ = frame_.world;
     frame_.slice = 0; // save() has put the last frame's half of surfaces_ there
     hitsFrom_.reset();
     if (frameCount_ > 0 && std::ranges::find(buffers, &buffers_["Surfaces"]) != buffers.end())

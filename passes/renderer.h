@@ -60,12 +60,14 @@ class Renderer
     // picture, slower: for tests and benchmarks. Independent `runs` of the picture lie below each other in what is
     // rendered and read, width x (height * runs); the first is what a lone run with this seed gives, to the bit.
     // `pipelines`: another renderer's on this device, of whatever scene, so that shaders both need are compiled once.
+    // `moves`: setScene() will change the scene's pose.
     Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
              const std::function<void(double)>& bvhProgress = {},
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1,
-             std::shared_ptr<PipelinePool> pipelines = nullptr);
+             std::shared_ptr<PipelinePool> pipelines = nullptr, bool moves = false);
     // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
-    // that methods can be compared in turns. The environment must be the sibling's.
+    // that methods can be compared in turns. The environment must be the sibling's. If the scene moves, it has no pose
+    // before setScene() gives it one.
     Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
@@ -77,6 +79,10 @@ class Renderer
     void recompile(); // takes all stages from pipelines() anew, once that holds other ones; starts over
     const Settings& settings() const { return settings_; }
     void setCamera(const scene::Camera& camera); // from the next frame on; the film goes on averaging
+    // From the next frame on: the scene in another pose, scene::pose() of the one that the renderer was made for, at
+    // `seconds` of whatever moves it. Does nothing where it is there already.
+    void setScene(const scene::Scene& posed, double seconds);
+    std::optional<double> sceneSeconds() const { return sceneSeconds_; } // of the last setScene()
     void wait();                                 // until all submitted frames are done
 
     image::Image read(const Output& output); // waits; in scene units
@@ -110,7 +116,7 @@ class Renderer
     gpu::Device& device_;
     Settings settings_;
     uint32_t runs_;
-    std::shared_ptr<const SceneOnDevice> scene_;
+    std::shared_ptr<SceneOnDevice> scene_;
     gpu::Buffer frameUniform_, counters_, previousPixels_;
     FrameBuffers buffers_;
     FramePlan plan_;
@@ -120,6 +126,9 @@ class Renderer
 
     shared::FrameUniform frame_ = {};
     std::optional<shared::CameraUniform> hitsFrom_; // the camera that the frame's half of Surfaces was traced from
+    uint32_t lastWorld_ = 0;                        // that a frame has shown
+    bool hasPose_ = true;
+    std::optional<double> sceneSeconds_;
     uint64_t frameCount_ = 0, historyFrames_ = 0;   // the latter of reservoirs that the next frame may reuse
     std::map<std::string, double> milliseconds_;    // summed over timedFrames_
     uint64_t timedFrames_ = 0;

@@ -11,19 +11,48 @@ namespace passes
 
 SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const scene::Camera& first,
                              scene::FeatureSet set, const std::function<void(double)>& bvhProgress,
-                             std::shared_ptr<PipelinePool> pool)
+                             std::shared_ptr<PipelinePool> pool, bool moves)
     : device(gpu), pipelines(pool ? std::move(pool) : std::make_shared<PipelinePool>(gpu)), camera(first),
       featureSet(set)
 {
     const auto start = Clock::now();
-    const scene::SceneTables made = scene::makeSceneTables(scene, gpu.limits().tableBytes, bvhProgress, set);
-    tables = std::make_unique<const scene::GpuScene>(gpu, made);
-    bvh = made.bvh.stats;
+    const uint64_t maxTableBytes = gpu.limits().tableBytes;
+    const auto take = [&](const scene::SceneTables& made) {
+        lights = made.lights;
+        features = made.features;
+        lengthScale = made.lengthScale;
+        radianceScale = made.radianceScale;
+    };
+    if (moves) {
+        poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes / 2, bvhProgress, set);
+        tables = std::make_unique<scene::GpuScene>(gpu, *poses);
+        poses->forgetTexels();
+        take(poses->rest());
+        show(0, scene);
+    } else {
+        const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, bvhProgress, set);
+        tables = std::make_unique<scene::GpuScene>(gpu, made);
+        bvh = made.bvh.stats;
+        take(made);
+    }
     tablesSeconds = secondsSince(start) - bvh.buildSeconds;
-    lights = made.lights;
-    features = made.features;
-    lengthScale = made.lengthScale;
-    radianceScale = made.radianceScale;
+}
+
+SceneOnDevice::SceneOnDevice(const SceneOnDevice& other)
+    : device(other.device), pipelines(other.pipelines), camera(other.camera), featureSet(other.featureSet),
+      tablesSeconds(other.tablesSeconds), bvh(other.bvh), lights(other.lights), features(other.features),
+      lengthScale(other.lengthScale), radianceScale(other.radianceScale),
+      poses(std::make_unique<scene::MovingTables>(*other.poses)),
+      tables(std::make_unique<scene::GpuScene>(device, *poses, other.tables.get()))
+{
+}
+
+void SceneOnDevice::show(uint32_t world, const scene::Scene& posed)
+{
+    const scene::SceneTables pose = poses->at(posed);
+    tables->write(device, world, pose);
+    bvh = pose.bvh.stats;
+    lights = pose.lights;
 }
 
 shared::CameraUniform SceneOnDevice::uniformOf(const scene::Camera& seenBy, double aspect) const
@@ -38,7 +67,7 @@ shared::CameraUniform SceneOnDevice::uniformOf(const scene::Camera& seenBy, doub
 
 Variant SceneOnDevice::variant(const Settings& settings) const
 {
-    return makeVariant(features, settings, camera.orthographic, tables->stack());
+    return makeVariant(features, settings, camera.orthographic, tables->stack(), moves());
 }
 
 bool SceneOnDevice::viewRepeats(const Settings& settings) const

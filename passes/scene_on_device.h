@@ -16,10 +16,18 @@ namespace passes
 {
 
 struct SceneOnDevice {
-    // `camera`: the first one that it is seen by; all others have its kind of projection, which is compiled in.
+    // With `moves`, the scene's own motion (scene::Motion): show() changes its pose. `camera`: the first one that it is seen by; all others have its kind of projection, which is compiled in.
     SceneOnDevice(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
                   scene::FeatureSet featureSet, const std::function<void(double)>& bvhProgress,
-                  std::shared_ptr<PipelinePool> pipelines);
+                  std::shared_ptr<PipelinePool> pipelines, bool moves = false);
+    // Another one of a scene that moves, which has no pose yet; textures and pipelines are shared.
+    SceneOnDevice(const SceneOnDevice& other);
+    SceneOnDevice& operator=(const SceneOnDevice&) = delete;
+
+    bool moves() const { return poses != nullptr; }
+
+    // The pose of a scene that moves, as world 0 or 1, from the next submission on.
+    void show(uint32_t world, const scene::Scene& posed);
 
     shared::CameraUniform uniformOf(const scene::Camera& camera, double aspect) const;
     Variant variant(const Settings& settings) const;
@@ -37,7 +45,8 @@ struct SceneOnDevice {
     scene::LightCounts lights;
     scene::SceneFeatures features;
     double lengthScale = 1, radianceScale = 1; // scaled over the scene's units
-    std::unique_ptr<const scene::GpuScene> tables;
+    std::unique_ptr<scene::MovingTables> poses; // of a scene that moves
+    std::unique_ptr<scene::GpuScene> tables;
 };
 
 } // namespace passes

@@ -28,12 +28,13 @@ static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
 static_assert(uint32_t(Color::Chosen) == shared::COLOR_CHOSEN && uint32_t(Color::Weighted) == shared::COLOR_WEIGHTED);
 
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
-                    const scene::TraversalStack& stack)
+                    const scene::TraversalStack& stack, bool moves)
 {
     Variant v;
     v.MAX_BOUNCES = settings.maxBounces;
     v.BOX_FILTER = settings.pixelFilter == PixelFilter::Box;
     v.ORTHOGRAPHIC = orthographic;
+    v.TWO_WORLDS = moves;
     v.STACK_SIZE = stack.entries;
     v.STACK_IN_REGISTERS = stack.inRegisters;
     if (settings.method != Method::Pt) {

@@ -24,7 +24,7 @@ struct Variant {
 };
 
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
-                    const scene::TraversalStack& stack);
+                    const scene::TraversalStack& stack, bool moves = false);
 
 Variant withAllFeatures(Variant variant); // with everything that scenes can need compiled in
 

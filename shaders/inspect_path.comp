@@ -11,8 +11,6 @@ TABLE(SET_PASS, 2, HistoryPaths);
 layout(set = SET_PASS, binding = 3, std430) readonly buffer Request { PathRequest request; };
 layout(set = SET_PASS, binding = 4, std430) writeonly buffer PathPoints { PathPoint pathPoints[]; };
 
-uint firstVertex = 1u;
-#define FIRST_VERTEX firstVertex
 #include "path/primary_hit.glsl"
 #include "path/walk.glsl"
 #include "restir/reservoir_store.glsl"

@@ -15,6 +15,6 @@ void main()
 
     Domain here = makeDomain(pixel, false);
     uint previousPixel;
-    bool found = here.seen && reproject(here, pixel, previousPixel) && alike(here, makeDomain(previousPixel, true));
+    bool found = here.seen && reproject(here, pixel, previousPixel) && alike(here, carriedOn(makeDomain(previousPixel, true)));
     previousPixels[pixel] = found ? previousPixel : NO_NEIGHBOR;
 }

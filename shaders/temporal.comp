@@ -19,13 +19,14 @@ LOAD_RESERVOIRS(History, History, HistoryPaths)
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 STORE_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)
 
-// f of the history's samples here, and of this pixel's samples there. In a loop, so that the walk is compiled once.
+// f of the history's samples here, and of this pixel's samples there. In a loop, so that the walk is compiled once; the
+// history's come last, so that renewed() is theirs.
 void shiftBothWays(uint pixel, Domain here, uint previousPixel, Domain there, out vec3 fHere[MAX_RESERVOIRS],
                    out vec3 fThere[MAX_RESERVOIRS])
 {
     uint way = 0u;
     LOOP_BEGIN(way < 2u)
-        bool backward = way != 0u;
+        bool backward = way == 0u;
         vec3 f[MAX_RESERVOIRS];
         Reservoir subjects[MAX_RESERVOIRS];
         Domain to = there;
@@ -34,7 +35,9 @@ void shiftBothWays(uint pixel, Domain here, uint previousPixel, Domain there, ou
             to = here;
             loadHistory(previousPixel, subjects);
         }
+        enterWorld(backward);
         shiftInto(to, subjects, f);
+        enterWorld(false);
         if (backward) fThere = f;
         else fHere = f;
         ++way;
@@ -52,7 +55,7 @@ void main()
     if (!here.seen || !reproject(here, pixel, previousPixel)) return;
     Domain there = makeDomain(previousPixel, true);
     uint historyConfidence = min(FETCH_WORD(HistoryConfidences, previousPixel), frame.maxConfidence); // Eq. 12
-    if (historyConfidence == 0u || !alike(here, there)) return;
+    if (historyConfidence == 0u || !alike(here, carriedOn(there))) return;
 
     vec3 fHere[MAX_RESERVOIRS];
     vec3 fThere[MAX_RESERVOIRS];
@@ -62,6 +65,8 @@ void main()
     Reservoir old[MAX_RESERVOIRS];
     loadReservoirs(pixel, r);
     loadHistory(previousPixel, old);
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+        if (BETWEEN_WORLDS) old[c].chosen.reconnection = renewed(c);
     uint confidence = confidences[pixel];
     float u = decisionNumber(pixel, STREAM_TEMPORAL); // one for all reservoirs
     vec3 color = vec3(0.0);                           // w_n chi(x) + w_h chi(T y)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -178,11 +179,7 @@ std::vector<RTCBuildPrimitive> primitivesOf(const BvhInput& input, std::span<con
     std::vector<RTCBuildPrimitive> primitives;
     primitives.reserve(pairs.size());
     for (const TrianglePair& pair : pairs) {
-        Box box;
-        for (const glm::vec3& corner : cornersOf(input, pair.first)) box.extend({corner, corner});
-        if (pair.second != NONE)
-            for (const glm::vec3& corner : cornersOf(input, pair.second)) box.extend({corner, corner});
-        const auto& [lower, upper] = box;
+        const auto [lower, upper] = boxOf(input, pair);
         primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, uint32_t(primitives.size())});
     }
     return primitives;
@@ -278,17 +275,42 @@ void requireFits(const char* what, uint64_t rows, uint32_t stride, uint64_t limi
             rows, what, bytesOf(rows, stride), limit);
 }
 
-} // namespace
-
-Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
+void requireValid(const BvhInput& input)
 {
     CHECK(input.needsAlphaTest.empty() || input.needsAlphaTest.size() == input.triangles.size());
     CHECK_LT(input.triangles.size(), size_t{shared::BVH_ALPHA_FLAG});
+}
+
+Bvh tablesOf(const WideTree& tree, const NodeLayout& layout, std::span<const TrianglePair> pairs, const BvhInput& input)
+{
+    Bvh bvh;
+    bvh.nodes = encodeNodes(tree, layout);
+    bvh.triangles = encodeTriangles(tree, pairs, input);
+    bvh.stats.nodes = tree.nodes.size();
+    bvh.stats.triangleRecords = tree.pairs.size();
+    bvh.stats.bytes = (bvh.nodes.size() + bvh.triangles.size()) * sizeof(glm::uvec4);
+    bvh.stats.sahCost = sahCost(tree);
+    bvh.stats.depth = tree.levels;
+    return bvh;
+}
+
+} // namespace
+
+Box boxOf(const BvhInput& input, const TrianglePair& pair)
+{
+    Box box;
+    for (const glm::vec3& corner : cornersOf(input, pair.first)) box.extend({corner, corner});
+    if (pair.second != NONE)
+        for (const glm::vec3& corner : cornersOf(input, pair.second)) box.extend({corner, corner});
+    return box;
+}
+
+Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
+{
+    requireValid(input);
     const auto start = Clock::now();
 
-    Bvh bvh;
     const std::vector<uint32_t> usable = usableTriangles(input);
-    bvh.stats.skippedTriangles = input.triangles.size() - usable.size();
     const std::vector<TrianglePair> pairs = pairTriangles(input, usable);
     // A pair has at least one record: do not begin what cannot end well.
     requireFits("pairs of triangles", pairs.size(), shared::BVH_RECORD_STRIDE, maxTableBytes);
@@ -300,16 +322,78 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     requireFits("tree nodes", layout.rows, shared::BVH_NODE_STRIDE,
                 std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES, shared::BVH_NODE_STRIDE)));
 
-    bvh.nodes = encodeNodes(tree, layout);
-    bvh.triangles = encodeTriangles(tree, pairs, input);
-    bvh.stats.nodes = tree.nodes.size();
-    bvh.stats.triangleRecords = tree.pairs.size();
-    bvh.stats.bytes = (bvh.nodes.size() + bvh.triangles.size()) * sizeof(glm::uvec4);
-    bvh.stats.sahCost = sahCost(tree);
-    bvh.stats.depth = tree.levels;
+    Bvh bvh = tablesOf(tree, layout, pairs, input);
+    bvh.stats.skippedTriangles = input.triangles.size() - usable.size();
     bvh.stats.buildSeconds = secondsSince(start);
     if (input.progress) input.progress(1.0);
     return bvh;
+}
+
+struct MovingBvh::Tree {
+    std::vector<TrianglePair> pairs;
+    WideTree wide;
+    NodeLayout layout;
+    double builtCost = 0;
+    Most most;
+
+    void pair(const BvhInput& input)
+    {
+        std::vector<uint32_t> all(input.triangles.size());
+        std::iota(all.begin(), all.end(), 0u);
+        pairs = pairTriangles(input, all, Edges::OfVertices);
+    }
+    void build(const BvhInput& input)
+    {
+        wide = collapse(reinsert(buildBinaryTree(input, pairs, false)));
+        layout = layOut(wide);
+        builtCost = sahCost(wide);
+    }
+    uint32_t nodeRows() const { return layout.rows * shared::BVH_NODE_STRIDE; }
+};
+
+MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes) : tree_(std::make_unique<Tree>())
+{
+    requireValid(rest);
+    const uint64_t count = std::max<uint64_t>(rest.triangles.size(), 1); // of pairs, where no edge stays common
+    requireFits("triangles", count, shared::BVH_RECORD_STRIDE, maxTableBytes);
+    Tree& tree = *tree_;
+    tree.pair(rest);
+    tree.build(rest);
+    const uint64_t nodes = 2 * uint64_t{tree.layout.rows} * count / std::max<size_t>(tree.pairs.size(), 1);
+    requireFits("tree nodes", nodes, shared::BVH_NODE_STRIDE,
+                std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES / 2, shared::BVH_NODE_STRIDE))); // of two worlds
+    tree.most = {.nodeRows = uint32_t(nodes) * shared::BVH_NODE_STRIDE,
+                 .recordRows = uint32_t(count) * shared::BVH_RECORD_STRIDE,
+                 .depth = std::min(tree.wide.levels + 4, shared::BVH_STACK_SIZE)};
+}
+
+MovingBvh::MovingBvh(const MovingBvh& other) : tree_(std::make_unique<Tree>(*other.tree_)) {}
+
+MovingBvh::~MovingBvh() = default;
+
+Bvh MovingBvh::at(const BvhInput& input)
+{
+    constexpr double WORN = 1.5;
+    const auto start = Clock::now();
+    const bool torn = !std::ranges::all_of(tree_->pairs, [&](const TrianglePair& p) { return shareVertices(input, p); });
+    if (!torn) refit(tree_->wide, tree_->pairs, input);
+    if (torn || sahCost(tree_->wide) > WORN * tree_->builtCost) {
+        Tree fresh{.pairs = tree_->pairs, .most = tree_->most};
+        if (torn) fresh.pair(input);
+        fresh.build(input);
+        const bool hasRoom = fresh.nodeRows() <= fresh.most.nodeRows && fresh.wide.levels <= fresh.most.depth;
+        if (hasRoom) *tree_ = std::move(fresh);
+        else if (torn) throw Error("A pose of the scene needs a deeper tree of boxes than it has room for.");
+        else tree_->builtCost = sahCost(tree_->wide); // go on with this one
+    }
+    Bvh bvh = tablesOf(tree_->wide, tree_->layout, tree_->pairs, input);
+    bvh.stats.buildSeconds = secondsSince(start);
+    return bvh;
+}
+
+const MovingBvh::Most& MovingBvh::most() const
+{
+    return tree_->most;
 }
 
 } // namespace scene

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,5 +41,30 @@ struct BvhInput {
 // Degenerate and non-finite triangles are left out. No triangle at all gives a tree that nothing hits.
 // Throws Error when the tree cannot fit `maxTableBytes`, for each of the two tables.
 Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes);
+
+// Of triangles that move. Its boxes are refitted to where they are; it is built anew once that has made it half as
+// expensive again as it was. Which hits traversal finds does not depend on it. Triangles without area stay in it, for
+// they may have some later: nothing meets them.
+class MovingBvh
+{
+  public:
+    // Throws Error like buildBvh().
+    MovingBvh(const BvhInput& rest, uint64_t maxTableBytes);
+    MovingBvh(const MovingBvh& other);
+    MovingBvh& operator=(const MovingBvh&) = delete;
+    ~MovingBvh();
+
+    // With the triangles, counted as at rest, where `input` has them.
+    Bvh at(const BvhInput& input);
+    // The most of a pose: rows of both tables, and BvhStats::depth.
+    struct Most {
+        uint32_t nodeRows = 0, recordRows = 0, depth = 0;
+    };
+    const Most& most() const;
+
+  private:
+    struct Tree;
+    std::unique_ptr<Tree> tree_;
+};
 
 } // namespace scene

@@ -213,6 +213,24 @@ WideTree collapse(const BinaryTree& tree)
     return Collapser(tree).run();
 }
 
+void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input)
+{
+    const auto boxOfNode = [&](uint32_t node) {
+        Box box;
+        for (const WideChild& child : tree.nodes[node].slots)
+            if (child.kind != WideChild::Kind::Empty) box.extend(child.box);
+        return box;
+    };
+    for (size_t n = tree.nodes.size(); n-- > 0;) { // children follow their parents
+        for (WideChild& child : tree.nodes[n].slots) {
+            if (child.kind == WideChild::Kind::Node) child.box = boxOfNode(child.first);
+            if (child.kind != WideChild::Kind::Leaf) continue;
+            child.box = {};
+            for (uint32_t i = 0; i < child.count; ++i) child.box.extend(boxOf(input, pairs[tree.pairs[child.first + i]]));
+        }
+    }
+}
+
 double sahCost(const WideTree& tree)
 {
     if (tree.pairs.empty()) return 0;

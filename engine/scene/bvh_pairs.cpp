@@ -23,8 +23,8 @@ struct Partner {
 class Pairing
 {
   public:
-    Pairing(const BvhInput& input, std::span<const uint32_t> usable)
-        : input_(input), usable_(usable), vertices_(vertexNumbers(input.positions)),
+    Pairing(const BvhInput& input, std::span<const uint32_t> usable, Edges edges)
+        : input_(input), usable_(usable), vertices_(vertexNumbers(input.positions, edges)),
           taken_(input.triangles.size(), true)
     {
         for (const uint32_t triangle : usable) taken_[triangle] = needsAlphaTest(triangle);
@@ -55,9 +55,9 @@ class Pairing
     }
 
   private:
-    // Numbers for vertices, equal where positions are. By their bits, which have an order also where they are no
+    // Numbers for vertices, equal where they may share an edge. Positions by their bits, which have an order also where they are no
     // numbers.
-    static std::vector<uint32_t> vertexNumbers(std::span<const glm::vec3> positions)
+    static std::vector<uint32_t> vertexNumbers(std::span<const glm::vec3> positions, Edges edges)
     {
         const auto key = [&](uint32_t i) {
             const glm::vec3 p = positions[i] + 0.0f; // -0 becomes 0
@@ -65,6 +65,7 @@ class Pairing
         };
         std::vector<uint32_t> order(positions.size());
         std::iota(order.begin(), order.end(), 0u);
+        if (edges == Edges::OfVertices) return order;
         std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
         std::vector<uint32_t> numbers(positions.size());
         for (size_t i = 0; i < order.size(); ++i)
@@ -140,9 +141,19 @@ class Pairing
 
 } // namespace
 
-std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable)
+std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable, Edges edges)
 {
-    return Pairing(input, usable).run();
+    return Pairing(input, usable, edges).run();
+}
+
+bool shareVertices(const BvhInput& input, const TrianglePair& pair)
+{
+    if (pair.second == NONE) return true;
+    const auto vertex = [&](uint32_t triangle, uint32_t corner) {
+        return input.triangles[triangle].vertices[corner % 3];
+    };
+    return vertex(pair.first, pair.firstTurn + 1) == vertex(pair.second, pair.secondTurn + 2) &&
+           vertex(pair.first, pair.firstTurn + 2) == vertex(pair.second, pair.secondTurn + 1);
 }
 
 } // namespace scene

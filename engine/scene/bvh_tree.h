@@ -73,10 +73,19 @@ struct WideTree {
     uint32_t levels = 0;
 };
 
+Box boxOf(const BvhInput& input, const TrianglePair& pair);
+
 // Puts triangles together whose common box is smaller than both of theirs: half the records, three quarters of the
 // nodes, and a test of both has less to do than two. `usable`: those to be in the tree; each is in one pair.
-// Alpha-tested ones stay alone.
-std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable);
+// Alpha-tested ones stay alone. `edges`: which ones are common, those between equal positions, or only those between the
+// same vertices, which stay common while they move.
+enum class Edges { OfPositions, OfVertices };
+std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable,
+                                        Edges edges = Edges::OfPositions);
+
+// Whether their edge is a common one of vertices, still: triangles without area name one vertex three times, and where
+// a transform mirrors, two vertices have changed places.
+bool shareVertices(const BvhInput& input, const TrianglePair& pair);
 
 // Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large
 // nodes where they enlarge the tree least. At most BVH_MAX_BINARY_DEPTH deep if the given tree was.
@@ -85,6 +94,9 @@ BinaryTree reinsert(BinaryTree tree);
 // Ylitie et al. 2017, Section 3.1: the set of binary nodes that gives the cheapest wide tree by the surface area
 // heuristic.
 WideTree collapse(const BinaryTree& tree);
+
+// Fits all boxes to where the pairs' triangles are.
+void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input);
 
 // Expected cost of a ray through the root's box.
 double sahCost(const WideTree& tree);

@@ -1,5 +1,6 @@
 #include "engine/scene/gpu_scene.h"
 
+#include "engine/base/check.h"
 #include "engine/base/fingerprint.h"
 
 #include <algorithm>
@@ -10,13 +11,41 @@ namespace scene
 namespace
 {
 
-gpu::Buffer uploadTable(gpu::Device& device, const char* label, std::span<const glm::uvec4> rows)
+gpu::Buffer createTable(gpu::Device& device, const char* label, uint64_t rows)
 {
-    const glm::uvec4 nothing(0);
-    if (rows.empty()) rows = std::span(&nothing, 1);
-    gpu::Buffer buffer = device.createBuffer({.label = label, .size = rows.size_bytes(), .usage = gpu::Usage::Table});
-    device.queue().write(buffer, std::as_bytes(rows));
-    return buffer;
+    return device.createBuffer(
+        {.label = label, .size = std::max<uint64_t>(rows, 1) * sizeof(glm::uvec4), .usage = gpu::Usage::Table});
+}
+
+void writeRows(gpu::Device& device, const gpu::Buffer& table, std::span<const glm::uvec4> rows, uint64_t first)
+{
+    device.queue().write(table, std::as_bytes(rows), first * sizeof(glm::uvec4));
+}
+
+std::shared_ptr<const gpu::Buffer> uploadTexels(gpu::Device& device, std::span<const glm::uvec4> rows)
+{
+    auto table = std::make_shared<gpu::Buffer>(createTable(device, "Texels", rows.size()));
+    writeRows(device, *table, rows, 0);
+    return table;
+}
+
+TableSizes sizesOf(const SceneTables& tables)
+{
+    return {.nodes = uint32_t(tables.bvh.nodes.size()),
+            .triangles = uint32_t(tables.bvh.triangles.size()),
+            .attributes = uint32_t(tables.attributes.size()),
+            .sceneData = uint32_t(tables.sceneData.size()),
+            .depth = tables.bvh.stats.depth};
+}
+
+// Links of a tree that lies behind other nodes and records.
+std::vector<glm::uvec4> moved(std::vector<glm::uvec4> nodes, uint32_t firstNode, uint32_t firstRecord)
+{
+    for (size_t i = 1; i < nodes.size(); i += shared::BVH_NODE_STRIDE) {
+        nodes[i].y += firstNode << 8;
+        nodes[i].z += firstRecord;
+    }
+    return nodes;
 }
 
 } // namespace
@@ -30,21 +59,50 @@ TraversalStack traversalStack(const gpu::Adapter& adapter, const BvhStats& bvh)
     return {.entries = entries, .inRegisters = wanted && entries <= MOST_REGISTERS};
 }
 
-GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
-    : nodes_(uploadTable(device, "Nodes", tables.bvh.nodes)),
-      triangles_(uploadTable(device, "Triangles", tables.bvh.triangles)),
-      attributes_(uploadTable(device, "Attributes", tables.attributes)),
-      texels_(uploadTable(device, "Texels", tables.texels)),
-      sceneData_(uploadTable(device, "SceneData", tables.sceneData)),
-      uniform_(
-          device.createBuffer({.label = "Scene", .size = sizeof(shared::SceneUniform), .usage = gpu::Usage::Uniform})),
-      stack_(traversalStack(device.adapter(), tables.bvh.stats))
+GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables, const TableSizes& room, uint32_t worlds,
+                   std::shared_ptr<const gpu::Buffer> texels)
+    : room_(room), texels_(texels ? std::move(texels) : uploadTexels(device, tables.texels)), nodes_(createTable(device, "Nodes", uint64_t{worlds} * room.nodes)),
+      triangles_(createTable(device, "Triangles", uint64_t{worlds} * room.triangles)),
+      attributes_(createTable(device, "Attributes", uint64_t{worlds} * room.attributes)),
+      sceneData_(createTable(device, "SceneData", tables.environment.size() + uint64_t{worlds} * room.sceneData)),
+      uniform_(device.createBuffer({.label = "Scene", .size = sizeof(worlds_), .usage = gpu::Usage::Uniform})),
+      stack_(traversalStack(device.adapter(), {.depth = room.depth}))
 {
-    device.queue().writeValue(uniform_, tables.uniform);
-    for (const std::vector<glm::uvec4>* rows :
-         {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels, &tables.sceneData})
+    writeRows(device, sceneData_, tables.environment, 0);
+    for (const std::vector<glm::uvec4>* rows : {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes,
+                                                &tables.texels, &tables.environment, &tables.sceneData})
         contents_ = fingerprint(std::as_bytes(std::span(*rows)), contents_);
     contents_ = fingerprint(std::as_bytes(std::span(&tables.uniform, 1)), contents_);
+}
+
+GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
+    : GpuScene(device, tables, sizesOf(tables), 1, nullptr)
+{
+    write(device, 0, tables);
+}
+
+GpuScene::GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other)
+    : GpuScene(device, tables.rest(), tables.most(), 2, other ? other->texels_ : nullptr)
+{
+}
+
+void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose)
+{
+    const uint32_t node = world * room_.nodes, record = world * room_.triangles, data = world * room_.sceneData;
+    CHECK(pose.bvh.nodes.size() <= room_.nodes && pose.bvh.triangles.size() <= room_.triangles);
+    CHECK(pose.attributes.size() <= room_.attributes && pose.sceneData.size() <= room_.sceneData);
+    CHECK_LE(pose.bvh.stats.depth, room_.depth);
+    shared::SceneUniform& uniform = worlds_[world];
+    uniform = pose.uniform;
+    uniform.rootNode = node / shared::BVH_NODE_STRIDE;
+    uniform.attributeOffset = world * room_.attributes;
+    for (uint32_t* offset : {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset}) *offset += data;
+    const uint32_t firstData = uniform.materialOffset; // of what this pose has to itself
+    writeRows(device, nodes_, moved(pose.bvh.nodes, uniform.rootNode, record / shared::BVH_RECORD_STRIDE), node);
+    writeRows(device, triangles_, pose.bvh.triangles, record);
+    writeRows(device, attributes_, pose.attributes, uniform.attributeOffset);
+    writeRows(device, sceneData_, pose.sceneData, firstData);
+    device.queue().write(uniform_, std::as_bytes(std::span(worlds_)));
 }
 
 gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const
@@ -55,14 +113,14 @@ gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& p
                                    .buffers = {{"Nodes", &nodes_},
                                                {"Triangles", &triangles_},
                                                {"Attributes", &attributes_},
-                                               {"Texels", &texels_},
+                                               {"Texels", texels_.get()},
                                                {"SceneData", &sceneData_},
                                                {"Scene", &uniform_}}});
 }
 
 uint64_t GpuScene::bytes() const
 {
-    return nodes_.size() + triangles_.size() + attributes_.size() + texels_.size() + sceneData_.size() +
+    return nodes_.size() + triangles_.size() + attributes_.size() + texels_->size() + sceneData_.size() +
            uniform_.size();
 }
 

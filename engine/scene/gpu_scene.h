@@ -1,5 +1,8 @@
 #pragma once
-// The scene on the device: the tables of SceneTables as buffers, bound as set 1 of every stage.
+// The scene on the device: the tables of SceneTables as buffers, bound as set 1 of every stage. A scene that moves is there
+// as two worlds, one after the other in each table (shaders/shared/scene.h).
+
+#include <array>
 
 #include "engine/gpu/gpu.h"
 #include "engine/scene/scene_tables.h"
@@ -22,6 +25,12 @@ class GpuScene
   public:
     // Uploads at once; the CPU copies of the tables can go afterwards.
     GpuScene(gpu::Device& device, const SceneTables& tables);
+    // Of a scene that moves: what all poses share; write() fills both worlds. `other`: one of the same scene, which has
+    // its textures already.
+    GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other = nullptr);
+
+    // From the next submission on; `world`: 0 or 1.
+    void write(gpu::Device& device, uint32_t world, const SceneTables& pose);
 
     gpu::BindGroup bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const;
     const TraversalStack& stack() const { return stack_; }
@@ -29,7 +38,13 @@ class GpuScene
     uint64_t contents() const { return contents_; } // a fingerprint of all of it: equal scenes have equal ones
 
   private:
-    gpu::Buffer nodes_, triangles_, attributes_, texels_, sceneData_, uniform_;
+    GpuScene(gpu::Device& device, const SceneTables& tables, const TableSizes& room, uint32_t worlds,
+             std::shared_ptr<const gpu::Buffer> texels);
+
+    TableSizes room_; // of a world
+    std::array<shared::SceneUniform, 2> worlds_ = {};
+    std::shared_ptr<const gpu::Buffer> texels_;
+    gpu::Buffer nodes_, triangles_, attributes_, sceneData_, uniform_;
     TraversalStack stack_;
     uint64_t contents_ = 0;
 };

@@ -70,16 +70,15 @@ struct Candidate {
 
 // Emissive triangles of positive area. A textured emitter counts with its image's mean: the pick probability may be
 // rough, the estimate stays unbiased.
-void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, double radianceScale,
+void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, const LightTables& tables,
                   std::vector<Candidate>& candidates)
 {
     std::vector<double> exitance(scene.materials.size());
     for (size_t i = 0; i < exitance.size(); ++i) {
         const Material& material = scene.materials[i];
         if (material.unlit) continue;
-        exitance[i] = pi * radianceScale * largest(glm::dvec3(material.emission)) * (material.doubleSided ? 2 : 1);
-        if (exitance[i] > 0 && material.emissiveTexture.image != NONE)
-            exitance[i] *= meanOfLargest(scene.images[material.emissiveTexture.image]);
+        exitance[i] = pi * tables.radianceScale * largest(glm::dvec3(material.emission)) *
+                      (material.doubleSided ? 2 : 1) * tables.emissiveMeans[i];
     }
     for (size_t t = 0; t < scene.triangles.size(); ++t) {
         const Triangle& triangle = scene.triangles[t];
@@ -123,10 +122,20 @@ void addPunctual(const Scene& scene, double lengthScale, double radius, LightTab
     }
 }
 
-// The environment's rows, and its power: radiance over the sphere of directions, through the scene's disk.
-double addEnvironment(const Environment& environment, double radius, LightTables& tables)
+std::vector<double> emissiveMeansOf(const Scene& scene)
 {
-    if (environment.width == 0) return 0;
+    std::vector<double> means;
+    for (const Material& material : scene.materials) {
+        const uint32_t image = material.emissiveTexture.image;
+        means.push_back(image == NONE ? 1 : meanOfLargest(scene.images[image]));
+    }
+    return means;
+}
+
+// The environment's rows, and its power: radiance over the sphere of directions, through a disk of radius 1.
+void addEnvironment(const Environment& environment, LightTables& tables)
+{
+    if (environment.width == 0) return;
     const size_t count = environment.radiance.size();
     std::vector<double> power(count), solidAngle(environment.height);
     double total = 0;
@@ -148,24 +157,32 @@ double addEnvironment(const Environment& environment, double radius, LightTables
         tables.environmentAliases.emplace_back(std::bit_cast<uint32_t>(a.threshold), a.alias,
                                                std::bit_cast<uint32_t>(b.threshold), b.alias);
     }
-    tables.counts.environments = 1;
-    return pi * radius * radius * total;
+    tables.environmentPower = pi * total;
 }
 
 } // namespace
 
 LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
-                            double radius)
+                            double radius, const LightTables* rest)
 {
     LightTables tables;
-    const double value = largestLight(scene, lengthScale);
-    if (value > 0) tables.radianceScale = std::exp2(-std::round(std::log2(value)));
+    if (rest) {
+        tables.radianceScale = rest->radianceScale;
+        tables.environmentPower = rest->environmentPower;
+        tables.emissiveMeans = rest->emissiveMeans;
+    } else {
+        const double value = largestLight(scene, lengthScale);
+        if (value > 0) tables.radianceScale = std::exp2(-std::round(std::log2(value)));
+        tables.emissiveMeans = emissiveMeansOf(scene);
+        addEnvironment(scene.environment, tables);
+    }
+    tables.counts.environments = scene.environment.width > 0;
 
     std::vector<Candidate> candidates;
-    addTriangles(scene, positions, tables.radianceScale, candidates);
+    addTriangles(scene, positions, tables, candidates);
     tables.counts.emissiveTriangles = candidates.size();
     addPunctual(scene, lengthScale, radius, tables, candidates);
-    const double environmentPower = addEnvironment(scene.environment, std::max(radius, 0.5), tables);
+    const double environmentPower = tables.environmentPower * std::max(radius, 0.5) * std::max(radius, 0.5);
     if (environmentPower > 0) candidates.push_back({shared::LIGHT_ENVIRONMENT, 0, environmentPower});
 
     std::vector<double> powers;

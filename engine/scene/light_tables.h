@@ -15,13 +15,16 @@ struct LightTables {
     std::vector<glm::uvec4> punctual;           // PUNCTUAL_ROWS each
     std::vector<glm::uvec4> environment;        // one row a texel
     std::vector<glm::uvec4> environmentAliases; // one row for two texels
+    double environmentPower = 0;                // of a scene of radius 1
     float environmentPick = 0;
     std::vector<uint32_t> lightOfTriangle; // NO_INDEX: not sampled by next-event estimation
+    std::vector<double> emissiveMeans;     // by material: of its emissive texture's largest channel; 1: it has none
     LightCounts counts;
 };
 
-// `positions` are scaled by lengthScale; `radius` is of the scaled scene.
+// `positions` are scaled by lengthScale; `radius` is of the scaled scene. `rest`: tables of another pose of the scene; what
+// all have in common is kept as it is there, the environment's rows are left out.
 LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
-                            double radius);
+                            double radius, const LightTables* rest = nullptr);
 
 } // namespace scene

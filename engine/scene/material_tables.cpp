@@ -1,8 +1,10 @@
 #include "engine/scene/material_tables.h"
 
 #include "engine/base/check.h"
+#include "engine/scene/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -39,49 +41,64 @@ std::pair<float, float> greenRange(const Image& image)
     return {float(low), float(high)};
 }
 
+// As the shaders take it.
+Material plain(Material material)
+{
+    if (material.ior == 0) material.transmission = 0; // glTF: 0 means total reflection
+    if (!material.thin && std::abs(material.ior - 1) < INDEX_OF_AIR) {
+        material.thin = true;
+        material.roughness = 0;
+        material.metallicRoughnessTexture.image = NONE;
+    }
+    return material;
+}
+
+using Head = std::array<glm::uvec4, shared::MATERIAL_HEAD_ROWS>;
+Head headOf(const Material& material, double radianceScale)
+{
+    uint32_t flags = 0;
+    if (material.doubleSided) flags |= shared::MATERIAL_DOUBLE_SIDED;
+    if (material.unlit) flags |= shared::MATERIAL_UNLIT;
+    if (material.transmission > 0) flags |= shared::MATERIAL_TRANSMISSIVE;
+    if (material.transmission > 0 && !material.thin) flags |= shared::MATERIAL_SOLID;
+    if (material.alpha == Alpha::Mask) flags |= shared::MATERIAL_MASK;
+    if (material.alpha == Alpha::Blend) flags |= shared::MATERIAL_BLEND;
+
+    const glm::vec3 emission(glm::dvec3(material.emission) * radianceScale);
+    const glm::vec3 baseColor = glm::vec3(material.baseColor) * (material.unlit ? float(radianceScale) : 1.0f);
+    const glm::vec3& tint = material.specularColor;
+    return {row(baseColor.x, baseColor.y, baseColor.z, material.baseColor.w),
+            row(emission.x, emission.y, emission.z, std::bit_cast<float>(flags)),
+            row(material.metallic, material.roughness, material.ior, material.specular),
+            row(tint.x, tint.y, tint.z, material.transmission), row(material.normalScale, material.alphaCutoff, 0, 0)};
+}
+
 class Builder
 {
   public:
     explicit Builder(const Scene& scene, double radianceScale) : scene_(scene), radianceScale_(radianceScale) {}
 
-    MaterialTables build()
+    MaterialTables build(bool moves)
     {
         std::vector<bool> used(scene_.materials.size());
         for (const Triangle& triangle : scene_.triangles) used[triangle.material] = true;
-        for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(scene_.materials[i], used[i]);
+        for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(plain(scene_.materials[i]), used[i]);
+        if (moves) {
+            for (const Motion::Paint& paint : scene_.motion->paints)
+                if (used[paint.material]) noteExtremes(scene_.materials[paint.material]);
+        }
         tables_.features.HAS_MANY_MATERIALS = scene_.materials.size() > 1;
         if (tables_.texels.empty()) tables_.texels.emplace_back(0);
         return std::move(tables_);
     }
 
   private:
-    void addMaterial(Material material, bool used)
+    void addMaterial(const Material& material, bool used)
     {
-        if (material.ior == 0) material.transmission = 0; // glTF: 0 means total reflection
-        if (!material.thin && std::abs(material.ior - 1) < INDEX_OF_AIR) {
-            material.thin = true;
-            material.roughness = 0;
-            material.metallicRoughnessTexture.image = NONE;
-        }
         if (used) noteFeatures(material);
-
-        uint32_t flags = 0;
-        if (material.doubleSided) flags |= shared::MATERIAL_DOUBLE_SIDED;
-        if (material.unlit) flags |= shared::MATERIAL_UNLIT;
-        if (material.transmission > 0) flags |= shared::MATERIAL_TRANSMISSIVE;
-        if (material.transmission > 0 && !material.thin) flags |= shared::MATERIAL_SOLID;
-        if (material.alpha == Alpha::Mask) flags |= shared::MATERIAL_MASK;
-        if (material.alpha == Alpha::Blend) flags |= shared::MATERIAL_BLEND;
-
-        const glm::vec3 emission(glm::dvec3(material.emission) * radianceScale_);
-        const glm::vec3 baseColor = glm::vec3(material.baseColor) * (material.unlit ? float(radianceScale_) : 1.0f);
-        const glm::vec3& tint = material.specularColor;
         auto& rows = tables_.rows;
-        rows.push_back(row(baseColor.x, baseColor.y, baseColor.z, material.baseColor.w));
-        rows.push_back(row(emission.x, emission.y, emission.z, std::bit_cast<float>(flags)));
-        rows.push_back(row(material.metallic, material.roughness, material.ior, material.specular));
-        rows.push_back(row(tint.x, tint.y, tint.z, material.transmission));
-        rows.push_back(row(material.normalScale, material.alphaCutoff, 0, 0));
+        const Head head = headOf(material, radianceScale_);
+        rows.insert(rows.end(), head.begin(), head.end());
         // In the order of TEXTURE_BASE_COLOR and so on; true: decoded from sRGB.
         addUse(material.baseColorTexture, true);
         addUse(material.metallicRoughnessTexture, false);
@@ -178,6 +195,16 @@ class Builder
         f.HAS_ROUGH |= high >= DIRAC_ROUGHNESS;
     }
 
+    // Of what an animation may make of it.
+    void noteExtremes(Material material)
+    {
+        for (const float extreme : {0.0f, 1.0f}) {
+            material.metallic = material.roughness = extreme;
+            material.emission = glm::vec3(extreme);
+            noteFeatures(plain(material));
+        }
+    }
+
     void noteTexture(const TextureUse& use, bool& feature)
     {
         if (use.image == NONE) return;
@@ -195,9 +222,17 @@ class Builder
 
 } // namespace
 
-MaterialTables makeMaterialTables(const Scene& scene, double radianceScale)
+MaterialTables makeMaterialTables(const Scene& scene, double radianceScale, bool moves)
 {
-    return Builder(scene, radianceScale).build();
+    return Builder(scene, radianceScale).build(moves);
+}
+
+std::vector<glm::uvec4> repaint(std::vector<glm::uvec4> rows, const Scene& scene, double radianceScale)
+{
+    for (size_t i = 0; i < scene.materials.size(); ++i)
+        std::ranges::copy(headOf(plain(scene.materials[i]), radianceScale),
+                          rows.begin() + std::ptrdiff_t(i * shared::MATERIAL_ROWS));
+    return rows;
 }
 
 } // namespace scene

@@ -14,6 +14,10 @@ struct MaterialTables {
     SceneFeatures features;         // of the materials that triangles use; light kinds are left false
 };
 
-MaterialTables makeMaterialTables(const Scene& scene, double radianceScale);
+// With `moves`, the features are those of all that Scene::motion may make of the materials.
+MaterialTables makeMaterialTables(const Scene& scene, double radianceScale, bool moves = false);
+
+// The rows of another pose: textures and what they are used for stay.
+std::vector<glm::uvec4> repaint(std::vector<glm::uvec4> rows, const Scene& scene, double radianceScale);
 
 } // namespace scene

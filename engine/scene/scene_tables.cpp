@@ -4,9 +4,12 @@
 #include "engine/base/error.h"
 #include "engine/scene/light_tables.h"
 #include "engine/scene/material_tables.h"
+#include "engine/scene/motion.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <glm/gtc/packing.hpp>
 
@@ -143,69 +146,192 @@ void requireFits(const char* what, uint64_t rows, uint64_t maxTableBytes)
                     rows * sizeof(glm::uvec4), maxTableBytes);
 }
 
+std::vector<glm::vec3> scaled(const std::vector<glm::vec3>& positions, double scale)
+{
+    std::vector<glm::vec3> list(positions.size());
+    for (size_t i = 0; i < list.size(); ++i) list[i] = glm::vec3(glm::dvec3(positions[i]) * scale);
+    return list;
+}
+
+// Which triangles traversal asks whether they exist; empty: none.
+std::vector<uint8_t> alphaTests(const Scene& scene, const SceneFeatures& features)
+{
+    std::vector<uint8_t> tests;
+    if (!features.HAS_ALPHA) return tests;
+    for (const Triangle& triangle : scene.triangles)
+        tests.push_back(scene.materials[triangle.material].alpha != Alpha::Opaque);
+    return tests;
+}
+
+SceneFeatures featuresOf(const Scene& scene, SceneFeatures features, const LightCounts& lights, bool moves,
+                         FeatureSet featureSet)
+{
+    if (featureSet == FeatureSet::Everything) return everything();
+    features.HAS_EMISSIVE = lights.emissiveTriangles > 0;
+    features.HAS_PUNCTUAL = lights.points + lights.spots > 0;
+    features.HAS_DIRECTIONAL = lights.directionals > 0;
+    features.HAS_ENVIRONMENT = lights.environments > 0;
+    if (!moves) return features;
+    // What is hidden or has no area at rest may shine later.
+    for (const Triangle& triangle : scene.triangles)
+        features.HAS_EMISSIVE |= scene.materials[triangle.material].emission != glm::vec3(0);
+    for (const Motion::Paint& paint : scene.motion->paints)
+        features.HAS_EMISSIVE |= !scene.materials[paint.material].unlit;
+    return features;
+}
+
+// What differs from pose to pose, but for the tree. The tables' scales and features are known.
+void fill(SceneTables& tables, const Scene& scene, const std::vector<glm::vec3>& positions, double radius,
+          const LightTables& lights, const std::vector<glm::uvec4>& materials, uint64_t maxTableBytes)
+{
+    tables.lights = lights.counts;
+    shared::SceneUniform& uniform = tables.uniform;
+    uniform.attributeRows = attributeRows(tables.features);
+    requireFits("triangles", scene.triangles.size() * uniform.attributeRows, maxTableBytes);
+    tables.attributes = packAttributes(scene, positions, uniform.attributeRows, lights.lightOfTriangle);
+    const auto append = [&](const std::vector<glm::uvec4>& rows) {
+        const uint64_t offset = tables.environment.size() + tables.sceneData.size();
+        tables.sceneData.insert(tables.sceneData.end(), rows.begin(), rows.end());
+        return uint32_t(offset);
+    };
+    uniform.materialOffset = append(materials);
+    uniform.lightOffset = append(lights.lights);
+    uniform.punctualOffset = append(lights.punctual);
+    uniform.lightCount = uint32_t(lights.lights.size());
+    uniform.environmentPick = lights.environmentPick;
+    uniform.radius = float(radius * tables.lengthScale);
+    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
+}
+
+// All but the tree.
+SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius,
+                     const LightTables& lights, MaterialTables materials, bool moves, uint64_t maxTableBytes,
+                     FeatureSet featureSet)
+{
+    SceneTables tables;
+    tables.lengthScale = lengthScale;
+    tables.radianceScale = lights.radianceScale;
+    tables.features = featuresOf(scene, materials.features, lights.counts, moves, featureSet);
+    tables.texels = std::move(materials.texels);
+    const bool black =
+        tables.features.HAS_ENVIRONMENT && lights.environment.empty(); // asked for, but the scene has none
+    tables.environment = black ? std::vector<glm::uvec4>{glm::uvec4(0)} : lights.environment;
+    tables.uniform.environmentOffset = 0;
+    tables.uniform.environmentAliasOffset = uint32_t(tables.environment.size());
+    tables.environment.insert(tables.environment.end(), lights.environmentAliases.begin(),
+                              lights.environmentAliases.end());
+    tables.uniform.environmentWidth = black ? 1 : scene.environment.width;
+    tables.uniform.environmentHeight = black ? 1 : scene.environment.height;
+    requireFits("textures", tables.texels.size(), maxTableBytes);
+    fill(tables, scene, positions, radius, lights, materials.rows, maxTableBytes);
+    return tables;
+}
+
 } // namespace
 
 SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
                             FeatureSet featureSet)
 {
-    SceneTables tables;
     const double radius = radiusOf(scene);
-    tables.lengthScale = powerOfTwoScale(radius);
-
-    std::vector<glm::vec3> positions(scene.positions.size());
-    for (size_t i = 0; i < positions.size(); ++i)
-        positions[i] = glm::vec3(glm::dvec3(scene.positions[i]) * tables.lengthScale);
-
-    const LightTables lights = makeLightTables(scene, positions, tables.lengthScale, radius * tables.lengthScale);
-    tables.radianceScale = lights.radianceScale;
-    tables.lights = lights.counts;
-    MaterialTables materials = makeMaterialTables(scene, tables.radianceScale);
-    tables.features = materials.features;
-    tables.features.HAS_EMISSIVE = lights.counts.emissiveTriangles > 0;
-    tables.features.HAS_PUNCTUAL = lights.counts.points + lights.counts.spots > 0;
-    tables.features.HAS_DIRECTIONAL = lights.counts.directionals > 0;
-    tables.features.HAS_ENVIRONMENT = lights.counts.environments > 0;
-
-    if (featureSet == FeatureSet::Everything) tables.features = everything();
-
-    shared::SceneUniform& uniform = tables.uniform;
-    uniform.attributeRows = attributeRows(tables.features);
-    requireFits("triangles", scene.triangles.size() * uniform.attributeRows, maxTableBytes);
-    tables.attributes = packAttributes(scene, positions, uniform.attributeRows, lights.lightOfTriangle);
-    tables.texels = std::move(materials.texels);
-
-    const auto append = [&](const std::vector<glm::uvec4>& rows) {
-        const uint32_t offset = uint32_t(tables.sceneData.size());
-        tables.sceneData.insert(tables.sceneData.end(), rows.begin(), rows.end());
-        return offset;
-    };
-    uniform.materialOffset = append(materials.rows);
-    uniform.lightOffset = append(lights.lights);
-    uniform.punctualOffset = append(lights.punctual);
-    const bool black =
-        tables.features.HAS_ENVIRONMENT && lights.environment.empty(); // asked for, but the scene has none
-    uniform.environmentOffset = append(black ? std::vector<glm::uvec4>{glm::uvec4(0)} : lights.environment);
-    uniform.environmentAliasOffset = append(lights.environmentAliases);
-    uniform.lightCount = uint32_t(lights.lights.size());
-    uniform.environmentWidth = black ? 1 : scene.environment.width;
-    uniform.environmentHeight = black ? 1 : scene.environment.height;
-    uniform.environmentPick = lights.environmentPick;
-    uniform.radius = float(radius * tables.lengthScale);
-    requireFits("textures", tables.texels.size(), maxTableBytes);
-    requireFits("materials and lights", tables.sceneData.size(), maxTableBytes);
-
-    std::vector<uint8_t> needsAlphaTest;
-    if (tables.features.HAS_ALPHA) {
-        needsAlphaTest.resize(scene.triangles.size());
-        for (size_t t = 0; t < needsAlphaTest.size(); ++t)
-            needsAlphaTest[t] = scene.materials[scene.triangles[t].material].alpha != Alpha::Opaque;
-    }
+    const double lengthScale = powerOfTwoScale(radius);
+    const std::vector<glm::vec3> positions = scaled(scene.positions, lengthScale);
+    const LightTables lights = makeLightTables(scene, positions, lengthScale, radius * lengthScale);
+    SceneTables tables =
+        tablesOf(scene, positions, lengthScale, radius, lights, makeMaterialTables(scene, lights.radianceScale), false,
+                 maxTableBytes, featureSet);
     tables.bvh = buildBvh({.positions = positions,
                            .triangles = scene.triangles,
-                           .needsAlphaTest = needsAlphaTest,
+                           .needsAlphaTest = alphaTests(scene, tables.features),
                            .progress = bvhProgress},
                           maxTableBytes);
     return tables;
+}
+
+struct MovingTables::Kept {
+    uint64_t maxTableBytes;
+    LightTables lights;
+    std::vector<glm::uvec4> materials;
+    SceneTables rest;
+    std::vector<uint8_t> needsAlphaTest;
+    std::optional<MovingBvh> bvh;
+    TableSizes most;
+};
+
+MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
+                           FeatureSet featureSet)
+    : kept_(std::make_unique<Kept>(Kept{.maxTableBytes = maxTableBytes}))
+{
+    CHECK(rest.motion);
+    const double radius = radiusOf(rest);
+    const double lengthScale = powerOfTwoScale(radius);
+    const std::vector<glm::vec3> positions = scaled(rest.positions, lengthScale);
+    kept_->lights = makeLightTables(rest, positions, lengthScale, radius * lengthScale);
+    MaterialTables materials = makeMaterialTables(rest, kept_->lights.radianceScale, true);
+    kept_->materials = materials.rows;
+    kept_->rest = tablesOf(rest, positions, lengthScale, radius, kept_->lights, std::move(materials), true,
+                           maxTableBytes, featureSet);
+    kept_->lights.environment.clear();
+    kept_->lights.environmentAliases.clear();
+    kept_->needsAlphaTest = alphaTests(rest, kept_->rest.features);
+    kept_->bvh.emplace(BvhInput{.positions = positions,
+                                .triangles = rest.triangles,
+                                .needsAlphaTest = kept_->needsAlphaTest,
+                                .progress = bvhProgress},
+                       maxTableBytes);
+
+    std::vector<bool> emits;
+    for (const Material& material : rest.materials) emits.push_back(material.emission != glm::vec3(0));
+    for (const Motion::Paint& paint : rest.motion->paints) emits[paint.material] = true;
+    const auto emitters = std::ranges::count_if(rest.triangles, [&](const Triangle& t) { return emits[t.material]; });
+    const MovingBvh::Most& tree = kept_->bvh->most();
+    kept_->most = {.nodes = tree.nodeRows,
+                   .triangles = tree.recordRows,
+                   .attributes = uint32_t(kept_->rest.attributes.size()),
+                   .sceneData = uint32_t(kept_->materials.size() + kept_->lights.punctual.size() + size_t(emitters) +
+                                         rest.lights.size() + 1),
+                   .depth = tree.depth};
+    requireFits("materials and lights", kept_->rest.environment.size() + kept_->most.sceneData, maxTableBytes);
+}
+
+MovingTables::MovingTables(const MovingTables& other) : kept_(std::make_unique<Kept>(*other.kept_)) {}
+
+MovingTables::~MovingTables() = default;
+
+const SceneTables& MovingTables::rest() const
+{
+    return kept_->rest;
+}
+
+void MovingTables::forgetTexels()
+{
+    kept_->rest.texels.clear();
+}
+
+SceneTables MovingTables::at(const Scene& posed)
+{
+    const SceneTables& rest = kept_->rest;
+    CHECK_EQ(posed.triangles.size() * rest.uniform.attributeRows, rest.attributes.size());
+    SceneTables tables{.uniform = rest.uniform,
+                       .features = rest.features,
+                       .lengthScale = rest.lengthScale,
+                       .radianceScale = rest.radianceScale};
+    const double radius = radiusOf(posed);
+    const std::vector<glm::vec3> positions = scaled(posed.positions, rest.lengthScale);
+    const LightTables lights =
+        makeLightTables(posed, positions, rest.lengthScale, radius * rest.lengthScale, &kept_->lights);
+    fill(tables, posed, positions, radius, lights, repaint(kept_->materials, posed, rest.radianceScale),
+         kept_->maxTableBytes);
+    tables.uniform.materialOffset += uint32_t(rest.environment.size());
+    tables.uniform.lightOffset += uint32_t(rest.environment.size());
+    tables.uniform.punctualOffset += uint32_t(rest.environment.size());
+    tables.bvh = kept_->bvh->at(
+        {.positions = positions, .triangles = posed.triangles, .needsAlphaTest = kept_->needsAlphaTest});
+    return tables;
+}
+
+const TableSizes& MovingTables::most() const
+{
+    return kept_->most;
 }
 
 } // namespace scene

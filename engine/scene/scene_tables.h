@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,8 @@ struct SceneTables {
     Bvh bvh;
     std::vector<glm::uvec4> attributes;
     std::vector<glm::uvec4> texels;
-    std::vector<glm::uvec4> sceneData;
+    std::vector<glm::uvec4> environment; // of table SceneData the first rows: the environment's
+    std::vector<glm::uvec4> sceneData;   // and those that follow
     shared::SceneUniform uniform = {};
     SceneFeatures features;
     LightCounts lights;
@@ -53,5 +55,35 @@ struct SceneTables {
 SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes,
                             const std::function<void(double)>& bvhProgress = {},
                             FeatureSet featureSet = FeatureSet::Needed);
+
+// Rows that a pose's tables have at most, and the depth of its tree.
+struct TableSizes {
+    uint32_t nodes = 0, triangles = 0, attributes = 0, sceneData = 0;
+    uint32_t depth = 0;
+};
+
+// The tables of a scene that moves, pose by pose. In all of them lengths and light are scaled as at rest, and what the
+// shaders provide for is what any pose may need.
+class MovingTables
+{
+  public:
+    // As makeSceneTables(), of Scene::motion's scene at rest.
+    MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {},
+                 FeatureSet featureSet = FeatureSet::Needed);
+    MovingTables(const MovingTables& other);
+    MovingTables& operator=(const MovingTables&) = delete;
+    ~MovingTables();
+
+    // At rest, without the tree: at() makes that of the first pose, too.
+    const SceneTables& rest() const;
+    void forgetTexels(); // of rest(), once they are on the device
+    // Of what pose() has made of the scene, without texels and environment, which are those of rest().
+    SceneTables at(const Scene& posed);
+    const TableSizes& most() const;
+
+  private:
+    struct Kept;
+    std::unique_ptr<Kept> kept_;
+};
 
 } // namespace scene

@@ -1,6 +1,6 @@
 // Domains: the integral of one pixel in one frame. With shift.glsl and candidates.glsl all that resampling knows of light
 // transport; tests put a closed-form integrand in place of the three. What stages use of them: Domain.seen, makeDomain, alike,
-// reproject; shiftInto, countShifts; offerCandidates, countCandidates.
+// carriedOn, reproject; shiftInto, renewed, countShifts; offerCandidates, countCandidates.
 #ifndef SHADERS_PATH_DOMAIN_GLSL
 #define SHADERS_PATH_DOMAIN_GLSL
 
@@ -27,9 +27,9 @@ float footprintOf(CameraUniform camera, vec3 position, vec3 normal, vec3 wo)
     return PART * squared / abs(dot(normal, wo));
 }
 
-Domain makeDomain(uint pixel, bool previous)
+// Of what was hit there, in the world that has been entered.
+Domain domainOf(Hit hit, CameraUniform camera)
 {
-    Hit hit = seenBy(pixel, previous);
     Domain d;
     d.seen = hit.triangle != NO_HIT;
     if (!d.seen) return d;
@@ -37,13 +37,28 @@ Domain makeDomain(uint pixel, bool previous)
     d.barycentric = hit.barycentric;
     TriangleGeometry g = loadTriangle(d.triangle);
     d.position = pointOn(g, d.barycentric);
-    CameraUniform camera = frame.camera;
-    if (previous) camera = frame.previousCamera;
     d.wo = towardsCamera(camera, d.position);
     d.normal = normalize(g.areaNormal);
     if (dot(d.normal, d.wo) < 0.0) d.normal = -d.normal;
     d.footprint = footprintOf(camera, d.position, d.normal, d.wo);
     return d;
+}
+
+Domain makeDomain(uint pixel, bool previous)
+{
+    CameraUniform camera = frame.camera;
+    if (previous) camera = frame.previousCamera;
+    enterWorld(previous);
+    Domain d = domainOf(seenBy(pixel, previous), camera);
+    enterWorld(false);
+    return d;
+}
+
+// What was seen in the frame before, where it is by now.
+Domain carriedOn(Domain before)
+{
+    if (!BETWEEN_WORLDS || !before.seen) return before;
+    return domainOf(Hit(before.triangle, before.barycentric, 0.0), frame.camera);
 }
 
 // Are two domains near enough to each other that reuse pays? Asks the geometry only, never the samples: unbiased.
@@ -59,7 +74,9 @@ bool reproject(Domain here, uint pixel, out uint previousPixel)
 {
     previousPixel = pixel;
     if (SAME_VIEW) return true;
-    vec3 p = project(frame.previousCamera, here.position);
+    enterWorld(true);
+    vec3 p = project(frame.previousCamera, BETWEEN_WORLDS ? hitPosition(here.triangle, here.barycentric) : here.position);
+    enterWorld(false);
     if (p.z <= 0.0) return false;
     vec2 size = vec2(frame.width, frame.runHeight);
     vec2 at = floor((p.xy / p.z * vec2(0.5, -0.5) + 0.5) * size);

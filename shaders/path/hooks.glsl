@@ -1,7 +1,6 @@
 // All that a stage must define for what it includes of shaders/path, and what it is told.
 //
 // STAGE (STAGE_*)      of whoever shifts: under which number values that are not finite are counted
-// FIRST_VERTEX         k of the vertex that a walk starts from, if not 1
 // DEFERS_SHADOW_RAYS   the stage defines emitUnlessBlocked itself
 #ifndef SHADERS_PATH_HOOKS_GLSL
 #define SHADERS_PATH_HOOKS_GLSL
@@ -10,10 +9,6 @@
 #include "restir/reservoir.glsl"
 #include "scene/bsdf.glsl"
 #include "scene/camera.glsl"
-
-#ifndef FIRST_VERTEX
-#define FIRST_VERTEX 1u
-#endif
 
 // x_k, about to scatter.
 struct Vertex {

@@ -7,6 +7,7 @@
 // Measure: primary sample space before x_r, area at x_r (solid angle for the environment), solid angle at x_r for x_(r+1)
 // when scattering found it, primary sample space after. Shifts preserve it, so |T'| = 1, and f(Y) of a reconnecting path
 // is its contribution in primary sample space times the densities p_(r-1) G (and p_r) that `arrival` and `departure` hold.
+// In a scene that moves areas at x_r count in units of its triangle's, which may be stretched from frame to frame.
 #ifndef SHADERS_PATH_RECONNECTION_GLSL
 #define SHADERS_PATH_RECONNECTION_GLSL
 
@@ -40,6 +41,9 @@ const ReconnectionVertex NO_VERTEX =
 ReconnectionVertex reconnectionVertex; // of the walk so far
 ReconnectionVertex lightVertex;        // the light that the last scattered ray found, joinable itself or not
 
+// What a density over area at x_r is multiplied with: the area that counts as 1.
+float unitOfArea(Surface s) { return TWO_WORLDS ? s.area : 1.0; }
+
 // Depends on the material alone, so that it is the same from all directions.
 bool scattersWidely(Surface s)
 {
@@ -63,7 +67,7 @@ void noteArrival(Vertex before, Segment to, Surface at)
     if (reconnectionVertex.index != 0u || !joinsLight(r, before.s, at.position, to.distance, to.arrival)) return;
     if (!scattersWidely(at)) return;
     reconnectionVertex.index = r;
-    reconnectionVertex.arrival = to.arrival;
+    reconnectionVertex.arrival = to.arrival * unitOfArea(at);
     reconnectionVertex.kept.triangle = to.hit.triangle;
     reconnectionVertex.kept.barycentric = to.hit.barycentric;
 }
@@ -79,13 +83,22 @@ void noteDeparture(Vertex x, Scatter scatter)
     }
 }
 
-void noteLight(Vertex x, Segment to, vec3 position)
+void noteLight(Vertex x, Segment to, Surface at)
 {
-    bool joins = reconnectionVertex.index == 0u && joinsLight(x.k + 1u, x.s, position, to.distance, to.arrival);
+    bool joins = reconnectionVertex.index == 0u && joinsLight(x.k + 1u, x.s, at.position, to.distance, to.arrival);
+    float unit = to.hit.triangle == NO_HIT ? 1.0 : unitOfArea(at);
     lightVertex = NO_VERTEX;
     lightVertex.index = joins ? x.k + 1u : 0u;
-    lightVertex.arrival = joins ? to.arrival : 1.0;
+    lightVertex.arrival = joins ? to.arrival * unit : 1.0;
     lightVertex.kept = Reconnection(to.hit.triangle, to.hit.barycentric, 0.0, to.scatter.direction, vec3(1.0));
+}
+
+// What is kept of a path that ends so. `last`: at x_r, so that what follows x_r is light; else `suffix` is what the scattering
+// events after x_r and the end let through.
+Reconnection suffixOf(Reconnection kept, bool last, vec3 suffix, Ending e)
+{
+    return last ? Reconnection(kept.triangle, kept.barycentric, e.lightPdf, e.direction, e.radiance)
+                : Reconnection(kept.triangle, kept.barycentric, 0.0, kept.direction, suffix);
 }
 
 // The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).
@@ -98,9 +111,7 @@ PathSample sampleOf(PathSeed seed, uint pathId, Ending e, out float density)
     if (x.index == 0u && !byLight) x = lightVertex;
     bool last = x.index == scatteringsOf(pathId); // what follows x_r is light
     density = last && byLight ? x.arrival : x.arrival * x.departure;
-    x.kept.suffix *= e.weighted;
-    if (last) x.kept = Reconnection(x.kept.triangle, x.kept.barycentric, e.lightPdf, e.direction, e.radiance);
-    return PathSample(seed, pathId, x.index, x.kept);
+    return PathSample(seed, pathId, x.index, suffixOf(x.kept, last, x.kept.suffix * e.weighted, e));
 }
 
 #endif

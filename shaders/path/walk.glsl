@@ -9,6 +9,10 @@
 // Can a scattered ray find light at all? If not, the last one is not traced.
 const bool HAS_REACHABLE_LIGHT = HAS_EMISSIVE || HAS_ENVIRONMENT || HAS_UNLIT;
 
+// A walk may begin behind x_1, where a path goes on that is known so far. If it is known to leave in a direction, that is it.
+uint firstVertex = 1u;
+vec3 firstDirection = vec3(0.0);
+
 uint tracedRays = 0u;
 uint shadowRays = 0u;
 
@@ -57,6 +61,12 @@ void emitByLight(Vertex x, PathSeed seed)
                       shadowRay(x.s, light.infinite, light.target, light.normal, light.offset, light.direction, random.w));
 }
 
+Scatter scatterAt(Vertex x, uvec4 random)
+{
+    if (BETWEEN_WORLDS && x.k == firstVertex && firstDirection != vec3(0.0)) return Scatter(firstDirection, vec3(1.0), 1.0, false);
+    return sampleBsdf(x.bsdf, vec3(unitFloat(random.x), unitFloat(random.y), unitFloat(random.z)));
+}
+
 // Surface s is the first vertex, x_1 of a whole path, seen from direction wo.
 void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
 {
@@ -66,7 +76,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
     x.s = s;
     x.bsdf = bsdf;
     x.throughput = vec3(1.0);
-    x.k = FIRST_VERTEX;
+    x.k = firstVertex;
     LOOP_BEGIN(x.k <= MAX_BOUNCES)
         if (absorbs(x.bsdf) || !visit(x)) return;
         if (wants(makePathId(x.k, BY_LIGHT))) emitByLight(x, seed);
@@ -74,7 +84,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
 
         uvec4 random = pathRandom(seed, x.k, PURPOSE_SCATTER);
         Segment to;
-        to.scatter = sampleBsdf(x.bsdf, vec3(unitFloat(random.x), unitFloat(random.y), unitFloat(random.z)));
+        to.scatter = scatterAt(x, random);
         x.throughput *= to.scatter.weight;
         if (x.throughput == vec3(0.0)) return;
         ++tracedRays;
@@ -103,7 +113,7 @@ void walk(Surface s, Bsdf bsdf, vec3 wo, PathSeed seed)
         }
         if (e.radiance != vec3(0.0)) {
             e.weighted = e.radiance * (to.scatter.dirac ? 1.0 : to.scatter.pdf / (to.scatter.pdf + e.lightPdf));
-            noteLight(x, to, next.position);
+            noteLight(x, to, next);
             emit(makePathId(x.k, BY_SCATTER), x.throughput * e.weighted, e);
         }
         if (to.hit.triangle == NO_HIT) return;

@@ -10,6 +10,17 @@ TABLE(SET_SCENE, 1, Triangles);
 TABLE(SET_SCENE, 2, Attributes);
 TABLE(SET_SCENE, 3, Texels);
 TABLE(SET_SCENE, 4, SceneData);
-layout(set = SET_SCENE, binding = 5, std140) uniform Scene { SceneUniform scene; };
+layout(set = SET_SCENE, binding = 5, std140) uniform Scene { SceneUniform worlds[2]; };
+
+// The world that everything is read from and traced in: the frame's own, unless a stage turns to the one before.
+uint world = frame.world;
+#define scene worlds[TWO_WORLDS ? world : 0u]
+#define TREE_ROOT (TWO_WORLDS ? scene.rootNode : 0u)
+
+// Between frames that show the same world, that is the one before, too.
+void enterWorld(bool previous)
+{
+    if (TWO_WORLDS) world = previous && BETWEEN_WORLDS ? 1u - frame.world : frame.world;
+}
 
 #endif

@@ -2,7 +2,7 @@
 //
 // The includer declares the tables Nodes and Triangles, the constants bool HAS_ALPHA, uint STACK_SIZE (at least the tree's
 // depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of
-// flagged triangles only.
+// flagged triangles only; and TREE_ROOT, if the root is not node 0.
 //
 // Written for drivers that run 8 lanes under masks (lib/lanes.glsl): hence planes picked by the ray's signs, and a stack in
 // registers. Mesa's CPU driver stores to an indexed array lane by lane, each behind a branch that is mispredicted when
@@ -14,6 +14,10 @@
 #include "lib/lanes.glsl"
 #include "lib/offset.glsl"
 #include "shared/bvh.h"
+
+#ifndef TREE_ROOT
+#define TREE_ROOT 0u
+#endif
 
 const uint NO_HIT = 0xffffffffu;
 const float RAY_MAX = 1e30; // farther than anything
@@ -46,7 +50,7 @@ struct TraversalRay {
 // and their rounding, of the scene's size however far the origin is.
 float distanceToScene(vec3 origin, vec3 direction)
 {
-    uvec4 frame = FETCH(Nodes, 0);
+    uvec4 frame = FETCH(Nodes, BVH_NODE_STRIDE * TREE_ROOT);
     uvec3 exponents = (uvec3(frame.w) >> uvec3(0u, 8u, 16u)) & 255u;
     vec3 halfExtent = 127.5 * uintBitsToFloat(exponents << 23);
     vec3 center = uintBitsToFloat(frame.xyz) + halfExtent;
@@ -223,7 +227,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     TraversalRay r = prepare(ray);
     Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
     uint order = any ? r.signs ^ 7u : r.signs;
-    uint group = 1u << order; // slot 0 of base 0: the root
+    uint group = (TREE_ROOT << 8) | (1u << order); // slot 0 of the base that is the root
     bool blocked = false;
     bool more = true;
     // Of the node whose triangles are to be tested.

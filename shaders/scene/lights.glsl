@@ -118,7 +118,7 @@ LightSample sampleLight(uvec4 random, Surface s)
         l.normal = (front ? g.areaNormal : -g.areaNormal) / twiceArea;
         if (squared != 0.0 && c != 0.0) { // NaN goes on
             l.pdf *= squared / (0.5 * twiceArea * abs(c));
-            uint row = item * scene.attributeRows;
+            uint row = attributeRow(item);
             uint material = materialRow(g.material);
             Coordinates at = loadCoordinates(row, barycentric);
             l.radiance = loadEmission(material, at, front, vec3(0.0)) * loadCoverage(material, row, barycentric, at);

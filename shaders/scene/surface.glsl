@@ -27,9 +27,11 @@ struct TriangleGeometry {
     float clearance; // least barycentric weight of a point that paths scatter at
 };
 
+uint attributeRow(uint triangle) { return (TWO_WORLDS ? scene.attributeOffset : 0u) + triangle * scene.attributeRows; }
+
 TriangleGeometry loadTriangle(uint triangle)
 {
-    uint row = triangle * scene.attributeRows;
+    uint row = attributeRow(triangle);
     uvec4 a = FETCH(Attributes, row);
     uvec4 b = FETCH(Attributes, row + 1u);
     uvec4 c = FETCH(Attributes, row + 2u);
@@ -168,7 +170,7 @@ uvec4 alphaKey(uint triangle, TriangleGeometry g, vec2 barycentric)
 // Does it exist for this ray? Called by traversal for triangles flagged so at build time.
 bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed)
 {
-    uint row = triangle * scene.attributeRows;
+    uint row = attributeRow(triangle);
     TriangleGeometry g = loadTriangle(triangle);
     float coverage = loadCoverage(materialRow(g.material), row, barycentric, loadCoordinates(row, barycentric));
     // Independent per ray, and the same again when the path is replayed.
@@ -218,7 +220,7 @@ vec3 shadingNormal(uint material, uvec4 packed, vec2 barycentric, Coordinates at
 
 Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
 {
-    uint row = triangle * scene.attributeRows;
+    uint row = attributeRow(triangle);
     TriangleGeometry g = loadTriangle(triangle);
     uint material = materialRow(g.material);
     Coordinates at = loadCoordinates(row, barycentric);

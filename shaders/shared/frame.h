@@ -32,7 +32,7 @@ struct FrameUniform {
     uint neighborCount;   // K
     float neighborRadius; // pixels
     uint runHeight;       // pixels, of one run's picture: independent runs lie below each other
-    uint padding0;
+    uint world;           // which of the scene's two worlds this frame shows: 0 or 1
     vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };

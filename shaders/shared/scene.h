@@ -18,8 +18,11 @@ SHARED_CONST uint ATTRIBUTE_ROWS_BARE = 4u;
 SHARED_CONST uint ATTRIBUTE_ROWS_UV = 6u;
 SHARED_CONST uint ATTRIBUTE_ROWS_FULL = 9u;
 
-// Table SceneData holds, at the offsets in SceneUniform: materials, lights, punctual lights, environment texels and
-// aliases. Material: rows 0-4, then TEXTURE_ROWS rows for each texture use.
+// A scene that moves is there twice, as two worlds: as it is, and as it was in the frame before. Each table but Texels, and
+// but the environment, holds one after the other.
+//
+// Table SceneData holds, at the offsets in SceneUniform: environment texels and aliases; materials, lights, punctual
+// lights. Material: rows 0-4, then TEXTURE_ROWS rows for each texture use.
 //   0 baseColor rgba | 1 emission rgb, flags | 2 metallic, roughness, ior, specular | 3 F0 dielectric rgb, transmission
 //   4 normalScale, alphaCutoff, 0, 0
 // Texture use: 0 first block, width | height << 16, flags, 0 | 1 row0 xyz, 0 | 2 row1 xyz, 0. First block NO_INDEX:
@@ -63,6 +66,8 @@ SHARED_CONST uint PUNCTUAL_ROWS = 3u;
 
 struct SceneUniform {
     uint attributeRows;          // rows of table Attributes per triangle
+    uint attributeOffset;        // rows
+    uint rootNode;               // of the tree in table Nodes
     uint materialOffset;         // rows in table SceneData
     uint lightOffset;            // rows
     uint lightCount;             // lights that next-event estimation picks from
@@ -74,11 +79,13 @@ struct SceneUniform {
     float environmentPick;       // probability that next-event estimation picks the environment
     float radius;                // of the bounding sphere about the origin, scaled
     uint padding0;
+    uint padding1;
+    uint padding2;
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(shared::SceneUniform) == 48);
+static_assert(sizeof(shared::SceneUniform) == 64);
 static_assert(shared::MATERIAL_ROWS == shared::MATERIAL_HEAD_ROWS + shared::TEXTURE_COUNT * shared::TEXTURE_ROWS);
 #endif
 #endif

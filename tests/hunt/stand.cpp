@@ -121,7 +121,7 @@ void eachLight(const scene::Scene& scene, Visit&& visit)
 {
     const scene::SceneTables tables = scene::makeSceneTables(scene, UINT64_MAX);
     for (uint32_t i = 0; i < tables.uniform.lightCount; ++i) {
-        const glm::uvec4 row = tables.sceneData[tables.uniform.lightOffset + i];
+        const glm::uvec4 row = tables.sceneData[tables.uniform.lightOffset - tables.environment.size() + i];
         visit(double(std::bit_cast<float>(row.z)), row.w & 3u, row.w >> 2u);
     }
 }

@@ -21,8 +21,11 @@ SceneBuffers::SceneBuffers(gpu::Device& device, const scene::Scene& scene)
     addTable("Triangles", tables_.bvh.triangles);
     addTable("Attributes", tables_.attributes);
     addTable("Texels", tables_.texels);
-    addTable("SceneData", tables_.sceneData);
-    add("Scene", std::as_bytes(std::span(&tables_.uniform, 1)), gpu::Usage::Uniform);
+    std::vector<glm::uvec4> sceneData = tables_.environment;
+    sceneData.insert(sceneData.end(), tables_.sceneData.begin(), tables_.sceneData.end());
+    addTable("SceneData", sceneData);
+    const shared::SceneUniform worlds[2] = {tables_.uniform};
+    add("Scene", std::as_bytes(std::span(worlds)), gpu::Usage::Uniform);
     const shared::FrameUniform frame = {};
     add("Frame", std::as_bytes(std::span(&frame, 1)), gpu::Usage::Uniform);
     const std::vector<uint32_t> counters(size_t{2} * shared::COUNTER_COUNT);

@@ -19,4 +19,5 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
         if (r[c].weightSum > 0.0) f[c] = finiteOrCounted(moved(to.toy, r[c].chosen), STAGE);
 }
 
+Reconnection renewed(uint c) { return NO_SAMPLE.reconnection; }
 void countShifts() {}
