@@ -19,19 +19,23 @@ void expectFinite(passes::Renderer& renderer)
 } // namespace
 
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                            uint32_t runs, const passes::CameraAt& cameraAt)
+                            uint32_t runs, const passes::CameraAt& cameraAt, const SceneAt& sceneAt)
 {
     constexpr uint32_t MOST = 256; // runs below each other in one picture: small dispatches cost more than they do
     const uint32_t batches = (runs + MOST - 1) / MOST, batch = (runs + batches - 1) / batches;
     PictureRuns result;
-    passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, batch);
+    passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, batch, nullptr, bool(sceneAt));
+    const auto bring = [&](uint32_t frame) {
+        if (cameraAt) renderer.setCamera(cameraAt(frame));
+        if (sceneAt) renderer.setScene(sceneAt(frame), frame);
+    };
     passes::Settings own = settings;
     for (uint32_t run = 0; run < runs; ++own.seed) {
-        if (cameraAt) renderer.setCamera(cameraAt(0));
+        bring(0);
         renderer.apply(own);
         renderer.reset();
         for (uint32_t frame = 0; frame < settings.frames; ++frame) {
-            if (cameraAt) renderer.setCamera(cameraAt(frame));
+            bring(frame);
             renderer.renderFrame();
         }
         const image::Image all = renderer.read(passes::colorOf(renderer.settings()));

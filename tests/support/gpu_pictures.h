@@ -1,6 +1,8 @@
 #pragma once
 // What the renderer makes of a scene, with error bars.
 
+#include <functional>
+
 #include "engine/gpu/gpu.h"
 #include "engine/scene/scene.h"
 #include "passes/camera_path.h"
@@ -10,10 +12,13 @@
 namespace support
 {
 
+// The pose of a scene in a frame.
+using SceneAt = std::function<scene::Scene(uint32_t frame)>;
+
 // Independent runs, each read after settings.frames frames (their mean, or with !settings.average the last). The camera
-// moves when `cameraAt` is given. A value that is not finite fails the test.
+// moves when `cameraAt` is given, the scene when `sceneAt` is. A value that is not finite fails the test.
 PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                            uint32_t runs, const passes::CameraAt& cameraAt = {});
+                            uint32_t runs, const passes::CameraAt& cameraAt = {}, const SceneAt& sceneAt = {});
 
 // Of the path tracer, whose single frames are runs.
 PictureEstimates renderFrames(gpu::Device& device, const scene::Scene& scene, passes::Settings settings,

@@ -29,6 +29,11 @@ const std::vector<PlantedError>& plantedErrors()
         {"NeighborsByContent", "spatial_gather.comp", "neighborIn(neighbor, slot) == pixel ?",
          "neighborIn(neighbor, slot) == pixel && loadReservoirsHead(neighbor, 0u).weightSum > 0.0 ?"},
         {"PathOfAnother", "spatial_gather.comp", "loadReservoirsPath(lender[c], c)", "loadReservoirsPath(pixel, c)"},
+        // What shows only where the scene moves.
+        {"PreviousWorldForgotten", "scene/bindings.glsl", "previous && BETWEEN_WORLDS ? 1u - frame.world : frame.world",
+         "frame.world"},
+        {"StaleSuffix", "temporal.comp", "if (BETWEEN_WORLDS) old[c]", "if (false) old[c]"},
+        {"StretchingForgotten", "path/reconnection.glsl", "TWO_WORLDS ? s.area : 1.0", "1.0"},
         // What weighted color alone shows: reservoirs stay right.
         {"ColorOfOwnWeightTimes1_02", "temporal.comp", "color += weight * colorOf", "color += 1.02 * weight * colorOf"},
         {"ColorBySwappedTemporalWeights", "temporal.comp",

@@ -3,10 +3,12 @@
 #include "engine/base/check.h"
 #include "passes/estimator.h"
 #include "tests/support/gpu_pictures.h"
+#include "tests/support/moving_worlds.h"
 #include "tests/support/test_scenes.h"
 
 #include <cstdlib>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace support
@@ -56,37 +58,45 @@ void PrintTo(const RestirCase& c, std::ostream* os)
 
 TileVerdict RestirCase::verdict(gpu::Device& device) const
 {
+    passes::Settings settings;
+    scene::Scene world;
+    SceneAt sceneAt;
     for (const TestScene& test : testScenes()) {
         if (test.name != std::string(scene)) continue;
-        const scene::Scene world = test.make();
-        passes::Settings settings = test.settings();
-        settings.width = settings.height = 24;
-        const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
-
-        const uint32_t lastFrame = frames - 1;
-        using View = std::pair<std::string, uint32_t>;  // scene, frame
-        static std::map<View, PictureEstimates> traced; // the matrix asks again and again
-        PictureEstimates& expected = traced[{scene, moves ? lastFrame : 0}];
-        if (expected.tiles.tiles.empty()) {
-            scene::Scene last = world; // as the last frame sees it
-            last.cameras[0] = cameraAt(lastFrame);
-            expected = renderFrames(device, last, settings, PT_FRAMES);
-        }
-
-        settings.seed = 1000;
-        settings.method = method;
-        settings.shift = shift;
-        settings.temporal = reuse != Reuse::Spatial;
-        settings.spatial = reuse == Reuse::Temporal ? 0 : 3;
-        settings.spatialRadius = 5;
-        settings.maxConfidence = maxConfidence;
-        settings.color = color;
-        settings.frames = frames;
-        settings.average = false;
-        return picturesAgree(renderRuns(device, world, settings, runs, cameraAt), expected);
+        world = test.make();
+        settings = test.settings();
     }
-    CHECK(false && "there is such a scene");
-    return {};
+    for (const MovingWorld& test : movingWorlds()) {
+        if (test.name != std::string(scene)) continue;
+        sceneAt = test.at;
+        world = test.at(0);
+        settings.maxBounces = test.maxBounces;
+    }
+    CHECK(!world.triangles.empty() && "there is such a scene");
+    settings.width = settings.height = 24;
+    const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
+
+    const uint32_t lastFrame = frames - 1;
+    using View = std::tuple<std::string, bool, uint32_t>; // scene, moves, frame
+    static std::map<View, PictureEstimates> traced;       // the matrix asks again and again
+    PictureEstimates& expected = traced[{scene, moves, moves || sceneAt ? lastFrame : 0}];
+    if (expected.tiles.tiles.empty()) {
+        scene::Scene last = sceneAt ? sceneAt(lastFrame) : world; // as the last frame sees it
+        last.cameras[0] = cameraAt(lastFrame);
+        expected = renderFrames(device, last, settings, PT_FRAMES);
+    }
+
+    settings.seed = 1000;
+    settings.method = method;
+    settings.shift = shift;
+    settings.temporal = reuse != Reuse::Spatial;
+    settings.spatial = reuse == Reuse::Temporal ? 0 : 3;
+    settings.spatialRadius = 5;
+    settings.maxConfidence = maxConfidence;
+    settings.color = color;
+    settings.frames = frames;
+    settings.average = false;
+    return picturesAgree(renderRuns(device, world, settings, runs, cameraAt, sceneAt), expected);
 }
 
 std::vector<RestirCase> restirCases()

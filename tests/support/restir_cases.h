@@ -15,7 +15,7 @@ namespace support
 enum class Reuse { Temporal, Spatial, Both };
 
 struct RestirCase {
-    const char* scene; // of testScenes()
+    const char* scene; // of testScenes() or movingWorlds()
     passes::Method method;
     passes::Shift shift;
     Reuse reuse;
