@@ -83,7 +83,7 @@ class Renderer
     // `seconds` of whatever moves it. Does nothing where it is there already.
     void setScene(const scene::Scene& posed, double seconds);
     std::optional<double> sceneSeconds() const { return sceneSeconds_; } // of the last setScene()
-    void wait();                                 // until all submitted frames are done
+    void wait();                                                         // until all submitted frames are done
 
     image::Image read(const Output& output); // waits; in scene units
     // Waits. For each pixel of the first run the index of the one that saw the same point in the frame before the last,
@@ -129,8 +129,8 @@ class Renderer
     uint32_t lastWorld_ = 0;                        // that a frame has shown
     bool hasPose_ = true;
     std::optional<double> sceneSeconds_;
-    uint64_t frameCount_ = 0, historyFrames_ = 0;   // the latter of reservoirs that the next frame may reuse
-    std::map<std::string, double> milliseconds_;    // summed over timedFrames_
+    uint64_t frameCount_ = 0, historyFrames_ = 0; // the latter of reservoirs that the next frame may reuse
+    std::map<std::string, double> milliseconds_;  // summed over timedFrames_
     uint64_t timedFrames_ = 0;
     std::deque<gpu::Submission> inFlight_;
 };

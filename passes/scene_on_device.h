@@ -16,7 +16,8 @@ namespace passes
 {
 
 struct SceneOnDevice {
-    // With `moves`, the scene's own motion (scene::Motion): show() changes its pose. `camera`: the first one that it is seen by; all others have its kind of projection, which is compiled in.
+    // With `moves`, the scene's own motion (scene::Motion): show() changes its pose. `camera`: the first one that it is
+    // seen by; all others have its kind of projection, which is compiled in.
     SceneOnDevice(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
                   scene::FeatureSet featureSet, const std::function<void(double)>& bvhProgress,
                   std::shared_ptr<PipelinePool> pipelines, bool moves = false);
@@ -44,7 +45,7 @@ struct SceneOnDevice {
     scene::BvhStats bvh;
     scene::LightCounts lights;
     scene::SceneFeatures features;
-    double lengthScale = 1, radianceScale = 1; // scaled over the scene's units
+    double lengthScale = 1, radianceScale = 1;  // scaled over the scene's units
     std::unique_ptr<scene::MovingTables> poses; // of a scene that moves
     std::unique_ptr<scene::GpuScene> tables;
 };

@@ -375,16 +375,20 @@ Bvh MovingBvh::at(const BvhInput& input)
 {
     constexpr double WORN = 1.5;
     const auto start = Clock::now();
-    const bool torn = !std::ranges::all_of(tree_->pairs, [&](const TrianglePair& p) { return shareVertices(input, p); });
+    const bool torn =
+        !std::ranges::all_of(tree_->pairs, [&](const TrianglePair& p) { return shareVertices(input, p); });
     if (!torn) refit(tree_->wide, tree_->pairs, input);
     if (torn || sahCost(tree_->wide) > WORN * tree_->builtCost) {
         Tree fresh{.pairs = tree_->pairs, .most = tree_->most};
         if (torn) fresh.pair(input);
         fresh.build(input);
         const bool hasRoom = fresh.nodeRows() <= fresh.most.nodeRows && fresh.wide.levels <= fresh.most.depth;
-        if (hasRoom) *tree_ = std::move(fresh);
-        else if (torn) throw Error("A pose of the scene needs a deeper tree of boxes than it has room for.");
-        else tree_->builtCost = sahCost(tree_->wide); // go on with this one
+        if (hasRoom)
+            *tree_ = std::move(fresh);
+        else if (torn)
+            throw Error("A pose of the scene needs a deeper tree of boxes than it has room for.");
+        else
+            tree_->builtCost = sahCost(tree_->wide); // go on with this one
     }
     Bvh bvh = tablesOf(tree_->wide, tree_->layout, tree_->pairs, input);
     bvh.stats.buildSeconds = secondsSince(start);

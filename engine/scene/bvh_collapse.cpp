@@ -226,7 +226,8 @@ void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& 
             if (child.kind == WideChild::Kind::Node) child.box = boxOfNode(child.first);
             if (child.kind != WideChild::Kind::Leaf) continue;
             child.box = {};
-            for (uint32_t i = 0; i < child.count; ++i) child.box.extend(boxOf(input, pairs[tree.pairs[child.first + i]]));
+            for (uint32_t i = 0; i < child.count; ++i)
+                child.box.extend(boxOf(input, pairs[tree.pairs[child.first + i]]));
         }
     }
 }

@@ -55,8 +55,8 @@ class Pairing
     }
 
   private:
-    // Numbers for vertices, equal where they may share an edge. Positions by their bits, which have an order also where they are no
-    // numbers.
+    // Numbers for vertices, equal where they may share an edge. Positions by their bits, which have an order also where
+    // they are no numbers.
     static std::vector<uint32_t> vertexNumbers(std::span<const glm::vec3> positions, Edges edges)
     {
         const auto key = [&](uint32_t i) {

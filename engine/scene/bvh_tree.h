@@ -77,8 +77,8 @@ Box boxOf(const BvhInput& input, const TrianglePair& pair);
 
 // Puts triangles together whose common box is smaller than both of theirs: half the records, three quarters of the
 // nodes, and a test of both has less to do than two. `usable`: those to be in the tree; each is in one pair.
-// Alpha-tested ones stay alone. `edges`: which ones are common, those between equal positions, or only those between the
-// same vertices, which stay common while they move.
+// Alpha-tested ones stay alone. `edges`: which ones are common, those between equal positions, or only those between
+// the same vertices, which stay common while they move.
 enum class Edges { OfPositions, OfVertices };
 std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable,
                                         Edges edges = Edges::OfPositions);

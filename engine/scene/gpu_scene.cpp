@@ -61,7 +61,8 @@ TraversalStack traversalStack(const gpu::Adapter& adapter, const BvhStats& bvh)
 
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables, const TableSizes& room, uint32_t worlds,
                    std::shared_ptr<const gpu::Buffer> texels)
-    : room_(room), texels_(texels ? std::move(texels) : uploadTexels(device, tables.texels)), nodes_(createTable(device, "Nodes", uint64_t{worlds} * room.nodes)),
+    : room_(room), texels_(texels ? std::move(texels) : uploadTexels(device, tables.texels)),
+      nodes_(createTable(device, "Nodes", uint64_t{worlds} * room.nodes)),
       triangles_(createTable(device, "Triangles", uint64_t{worlds} * room.triangles)),
       attributes_(createTable(device, "Attributes", uint64_t{worlds} * room.attributes)),
       sceneData_(createTable(device, "SceneData", tables.environment.size() + uint64_t{worlds} * room.sceneData)),

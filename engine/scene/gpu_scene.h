@@ -1,6 +1,6 @@
 #pragma once
-// The scene on the device: the tables of SceneTables as buffers, bound as set 1 of every stage. A scene that moves is there
-// as two worlds, one after the other in each table (shaders/shared/scene.h).
+// The scene on the device: the tables of SceneTables as buffers, bound as set 1 of every stage. A scene that moves is
+// there as two worlds, one after the other in each table (shaders/shared/scene.h).
 
 #include <array>
 

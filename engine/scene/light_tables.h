@@ -22,8 +22,8 @@ struct LightTables {
     LightCounts counts;
 };
 
-// `positions` are scaled by lengthScale; `radius` is of the scaled scene. `rest`: tables of another pose of the scene; what
-// all have in common is kept as it is there, the environment's rows are left out.
+// `positions` are scaled by lengthScale; `radius` is of the scaled scene. `rest`: tables of another pose of the scene;
+// what all have in common is kept as it is there, the environment's rows are left out.
 LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
                             double radius, const LightTables* rest = nullptr);
 

@@ -236,9 +236,8 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     const double lengthScale = powerOfTwoScale(radius);
     const std::vector<glm::vec3> positions = scaled(scene.positions, lengthScale);
     const LightTables lights = makeLightTables(scene, positions, lengthScale, radius * lengthScale);
-    SceneTables tables =
-        tablesOf(scene, positions, lengthScale, radius, lights, makeMaterialTables(scene, lights.radianceScale), false,
-                 maxTableBytes, featureSet);
+    SceneTables tables = tablesOf(scene, positions, lengthScale, radius, lights,
+                                  makeMaterialTables(scene, lights.radianceScale), false, maxTableBytes, featureSet);
     tables.bvh = buildBvh({.positions = positions,
                            .triangles = scene.triangles,
                            .needsAlphaTest = alphaTests(scene, tables.features),
@@ -324,8 +323,8 @@ SceneTables MovingTables::at(const Scene& posed)
     tables.uniform.materialOffset += uint32_t(rest.environment.size());
     tables.uniform.lightOffset += uint32_t(rest.environment.size());
     tables.uniform.punctualOffset += uint32_t(rest.environment.size());
-    tables.bvh = kept_->bvh->at(
-        {.positions = positions, .triangles = posed.triangles, .needsAlphaTest = kept_->needsAlphaTest});
+    tables.bvh =
+        kept_->bvh->at({.positions = positions, .triangles = posed.triangles, .needsAlphaTest = kept_->needsAlphaTest});
     return tables;
 }
 

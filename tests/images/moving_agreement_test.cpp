@@ -1,5 +1,5 @@
-// ReSTIR stays unbiased where the scene itself moves: the mean of single frames is the path tracer's picture of the scene
-// as that frame has it, whatever the history.
+// ReSTIR stays unbiased where the scene itself moves: the mean of single frames is the path tracer's picture of the
+// scene as that frame has it, whatever the history.
 
 #include <cmath>
 #include <cstdlib>
@@ -44,16 +44,16 @@ std::vector<RestirCase> movingCases()
             {"BallMirrored", RgbRestir, Hybrid, Both, false, 8},
             {"BallWobbles", GroupedRestir, Hybrid, Both, true, 8},
             {"LampMoves", RgbRestir, Hybrid, Both, false, 8},
-            {"LampChanges", RgbRestir, Hybrid, Both, false, 8, 200, 5},
+            {"LampChanges", RgbRestir, Hybrid, Both, false, 8, 600, 5},
             {"LampChanges", RestirPt, Replay, Temporal, false, 64, 300, 6},
-            {"LightsWander", RgbRestir, Hybrid, Both, false, 8},
+            {"LightsWander", RgbRestir, Hybrid, Both, false, 8, 900},
             {"PaintDries", RgbRestir, Hybrid, Both, false, 8, 300},
             {"MirrorMoves", RgbRestir, Hybrid, Both, false, 8},
             {"GlassMoves", RgbRestir, Hybrid, Both, false, 8, 800},
             {"PanesSlide", RgbRestir, Hybrid, Both, false, 8, 300},
             {"BumpsMove", RestirPt, Hybrid, Both, false, 8},
             {"OrthographicBall", RgbRestir, Hybrid, Both, true, 8},
-            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 450},
+            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 900},
             {"RoomRebuilds", RestirPt, Reconnection, Temporal, true, 8, 600},
             {"RoomRebuilds", GroupedRestir, Replay, Both, false, 8, 450},
         };
@@ -94,7 +94,7 @@ void PrintTo(const MovingError& error, std::ostream* os)
 
 const MovingError ERRORS[] = {
     {"PreviousWorldForgotten", {"LampChanges", RgbRestir, Hybrid, Temporal, false, 64, 200, 5}},
-    {"StaleSuffix", {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 450}},
+    {"StaleSuffix", {"LampChanges", RgbRestir, Hybrid, Both, false, 64, 400, 5}},
     {"StretchingForgotten", {"WallStretches", RgbRestir, Hybrid, Temporal, false, 64, 300}},
 };
 
@@ -148,8 +148,8 @@ class MovingWorlds : public GpuTest
     }
 };
 
-// A light of which one point is all: nothing is left to chance. Who reads the current lights for the previous target has the
-// bias B(r) = 1 / (1 + c) - r / (r + c); who reads the previous ones has none.
+// A light of which one point is all: nothing is left to chance. Who reads the current lights for the previous target
+// has the bias B(r) = 1 / (1 + c) - r / (r + c); who reads the previous ones has none.
 TEST_F(MovingWorlds, ALightThatChangesHasItsOldStrengthInThePreviousFrame)
 {
     for (const float r : {2.0f, 0.5f, 10.0f}) EXPECT_NEAR(lightStepBias(device(), r), 0, 1e-5) << r;
@@ -197,7 +197,7 @@ TEST_F(MovingWorlds, AWorldThatMovesWithItsCameraRests)
             const float size = std::max({rests[i].r, rests[i].g, rests[i].b, 1e-3f});
             same += glm::length(rests[i] - moves[i]) < 0.01f * size;
         }
-        EXPECT_GT(double(same) / double(rests.size()), 0.97) << int(shift);
+        EXPECT_GT(double(same) / double(rests.size()), 0.95) << int(shift);
     }
 }
 

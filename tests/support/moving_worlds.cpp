@@ -119,7 +119,8 @@ Scene ballWobbles(uint32_t frame)
     Scene scene = moving(testScene("Lambert"));
     const auto [first, end] = trianglesOf(scene, BALL);
     std::set<uint32_t> own;
-    for (size_t t = first; t < end; ++t) own.insert(scene.triangles[t].vertices.begin(), scene.triangles[t].vertices.end());
+    for (size_t t = first; t < end; ++t)
+        own.insert(scene.triangles[t].vertices.begin(), scene.triangles[t].vertices.end());
     for (const uint32_t v : own) {
         vec3& p = scene.positions[v];
         p += scene.normals[v] * (0.12f * std::sin(5 * p.x + 3 * p.y + 0.9f * static_cast<float>(frame)));
@@ -129,7 +130,8 @@ Scene ballWobbles(uint32_t frame)
 Scene lampMoves(uint32_t frame)
 {
     Scene scene = moving(testScene("Lambert"));
-    moveMaterial(scene, LAMP, glm::translate(I, {0.25f * static_cast<float>(frame % 6) - 0.6f, -0.1f * float(frame % 3), 0}));
+    moveMaterial(scene, LAMP,
+                 glm::translate(I, {0.25f * static_cast<float>(frame % 6) - 0.6f, -0.1f * float(frame % 3), 0}));
     return scene;
 }
 Scene lampChanges(uint32_t frame) // color and power, by a factor of 10 and to nothing
@@ -184,7 +186,8 @@ Scene panesSlide(uint32_t frame) // blended, before a wall
 Scene bumpsMove(uint32_t frame) // textures go with what they are on
 {
     Scene scene = moving(testScene("NormalMap"));
-    moveMaterial(scene, 1, glm::translate(I, {0.15f * static_cast<float>(frame) - 0.4f, 0.05f * static_cast<float>(frame), 0}));
+    moveMaterial(scene, 1,
+                 glm::translate(I, {0.15f * static_cast<float>(frame) - 0.4f, 0.05f * static_cast<float>(frame), 0}));
     return scene;
 }
 Scene orthographicBall(uint32_t frame)
@@ -219,7 +222,8 @@ void transform(scene::Scene& scene, size_t firstTriangle, size_t endTriangle, co
         scene.positions[v] = glm::vec3(place * glm::vec4(scene.positions[v], 1));
         scene.normals[v] = glm::normalize(normals * scene.normals[v]);
         if (!scene.tangents.empty())
-            scene.tangents[v] = glm::vec4(glm::normalize(glm::mat3(place) * glm::vec3(scene.tangents[v])), scene.tangents[v].w);
+            scene.tangents[v] =
+                glm::vec4(glm::normalize(glm::mat3(place) * glm::vec3(scene.tangents[v])), scene.tangents[v].w);
     }
 }
 

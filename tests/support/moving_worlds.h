@@ -1,5 +1,6 @@
 #pragma once
-// Small scenes that move, as a renderer is shown them: the same triangles, lights and materials in every frame, elsewhere.
+// Small scenes that move, as a renderer is shown them: the same triangles, lights and materials in every frame,
+// elsewhere.
 
 #include <cstdint>
 #include <vector>
@@ -16,8 +17,8 @@ struct MovingWorld {
 };
 std::vector<MovingWorld> movingWorlds();
 
-// The triangles from `first` on: each vertex where `place` takes it, with its normal. Triangles change the order of their
-// corners where the transform mirrors.
+// The triangles from `first` on: each vertex where `place` takes it, with its normal. Triangles change the order of
+// their corners where the transform mirrors.
 void transform(scene::Scene& scene, size_t firstTriangle, size_t endTriangle, const glm::mat4& place);
 
 // As scene::pose() hides what is not visible.
