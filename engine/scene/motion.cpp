@@ -1,14 +1,14 @@
 #include "engine/scene/motion.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
-#include "engine/base/shown.h"
+#include "engine/scene/choice.h"
 
 namespace scene
 {
@@ -210,20 +210,12 @@ std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& ch
     if (choice == "off") return {};
     const std::vector<Animation> none;
     const std::vector<Animation>& animations = scene.motion ? scene.motion->animations : none;
-    std::vector<uint32_t> chosen;
-    const bool all = choice == "all";
-    for (uint32_t i = 0; i < animations.size() && (all || chosen.empty()); ++i)
-        if (all || animations[i].name == choice) chosen.push_back(i);
-    uint32_t index = 0;
-    const auto end = choice.data() + choice.size();
-    const auto [rest, problem] = std::from_chars(choice.data(), end, index);
-    if (chosen.empty() && problem == std::errc() && rest == end && index < animations.size()) chosen.push_back(index);
-    if (chosen.empty() && !all) {
-        std::string names;
-        for (uint32_t i = 0; i < std::min<size_t>(animations.size(), 20); ++i)
-            names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, animations[i].name);
-        throw Error("The scene has no animation \"{}\": it has {}{}.", shown(choice),
-                    animations.empty() ? "none" : names, animations.size() > 20 ? " and more" : "");
+    std::vector<uint32_t> chosen(animations.size());
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    if (choice != "all") {
+        std::vector<std::string> names;
+        for (const Animation& animation : animations) names.push_back(animation.name);
+        chosen = {chooseName(names, choice, "animation")};
     }
     for (const uint32_t i : chosen)
         if (!animations[i].fault.empty())
