@@ -1,7 +1,6 @@
 #include "engine/scene/motion.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -114,18 +113,21 @@ void hidePart(Scene& scene, const Motion::Part& part, const Mesh& mesh)
         scene.triangles[t].vertices.fill(part.firstVertex);
 }
 
-void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, double seconds)
+void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, bool atRest, double seconds)
 {
     constexpr double FARTHEST = LARGEST_SCENE / 2;
     std::vector<bool> lost(posed.vertices.size(), false);
     for (size_t v = 0; v < posed.vertices.size(); ++v) {
         const glm::dvec3 position = posed.vertices[v].position - scene.origin;
-        const double far = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-        lost[v] = !(far <= FARTHEST) || std::isnan(position.x + position.y + position.z);
+        lost[v] = !glm::all(glm::lessThanEqual(glm::abs(position), glm::dvec3(FARTHEST))); // also where one is NaN
         scene.positions[part.firstVertex + v] = lost[v] ? glm::vec3(0) : glm::vec3(position);
     }
     for (size_t t = 0; t < posed.triangles.size(); ++t) {
         auto& vertices = scene.triangles[part.firstTriangle + t].vertices;
+        if (atRest && !isFinite(posed, posed.triangles[t])) { // the loader has said so
+            vertices.fill(part.firstVertex + posed.triangles[t][0]);
+            continue;
+        }
         std::array<glm::dvec3, 3> corners;
         for (size_t i = 0; i < 3; ++i) {
             const uint32_t v = posed.triangles[t][i];
@@ -252,7 +254,7 @@ void pose(Scene& scene, std::span<const uint32_t> animations, double seconds)
                             .morphWeights = state.nodes[part.node].weights};
         if (part.skin != NONE) placement.worldFromSkin = world.worldFromSkin[part.skin];
         const TextureUse& normalTexture = scene.materials[scene.triangles[part.firstTriangle].material].normalTexture;
-        writePart(scene, part, poseMesh(mesh, placement, normalTexture), seconds);
+        writePart(scene, part, poseMesh(mesh, placement, normalTexture), animations.empty(), seconds);
     }
     placeLights(scene, motion, state, world);
     placeCameras(scene, motion, state, world);
