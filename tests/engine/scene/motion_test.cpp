@@ -408,7 +408,7 @@ TEST(Motion, ABrokenJointLeavesTheOtherTrianglesAsTheyAre)
     file.material()["normalTexture"]["index"] = file.texture({0, 0, 0, 0});
     file.attributes() = {{"POSITION", file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 5, 0}, "VEC3")},
                          {"NORMAL", file.accessor<float>(std::vector<float>(12, 0.0f), "VEC3")},
-                         {"TEXCOORD_0", file.accessor<float>({0, 1, 1, 1, 0, 0, 0, 2}, "VEC2")},
+                         {"TEXCOORD_0", file.accessor<float>({0, 1, 0, 0, 1, 1, -1, 1}, "VEC2")},
                          {"JOINTS_0", file.accessor<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, "VEC4")},
                          {"WEIGHTS_0", file.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4")}};
     file.primitive()["indices"] = file.accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR");
