@@ -5,10 +5,10 @@
 #include "engine/base/files.h"
 #include "engine/base/json.h"
 #include "engine/base/shown.h"
+#include "engine/scene/choice.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -152,18 +152,9 @@ uint32_t chooseCamera(const scene::Scene& scene, const std::string& nameOrIndex)
 {
     CHECK(!scene.cameras.empty());
     if (nameOrIndex.empty()) return 0;
-    for (uint32_t i = 0; i < scene.cameras.size(); ++i)
-        if (scene.cameras[i].name == nameOrIndex) return i;
-
-    uint32_t index = 0;
-    const char* textEnd = nameOrIndex.data() + nameOrIndex.size();
-    const auto [end, error] = std::from_chars(nameOrIndex.data(), textEnd, index);
-    if (error == std::errc{} && end == textEnd && index < scene.cameras.size()) return index;
-
-    std::string names;
-    for (size_t i = 0; i < scene.cameras.size(); ++i)
-        names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, scene.cameras[i].name);
-    throw Error("Scene \"{}\" has no camera \"{}\"; it has: {}.", scene.name, nameOrIndex, names);
+    std::vector<std::string> names;
+    for (const scene::Camera& camera : scene.cameras) names.push_back(camera.name);
+    return scene::chooseName(names, nameOrIndex, "camera");
 }
 
 CameraAt cameraPath(const Json& path, const scene::Camera& base, const glm::dvec3& sceneOrigin)

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -86,7 +84,6 @@ using Quiet = policy<domain_error<ignore_error>, pole_error<ignore_error>, overf
                      evaluation_error<ignore_error>>;
 using NormalLaw = boost::math::normal_distribution<double, Quiet>;
 using StudentLaw = boost::math::students_t_distribution<double, Quiet>;
-using ChiSquaredLaw = boost::math::chi_squared_distribution<double, Quiet>;
 
 } // namespace
 
@@ -108,11 +105,6 @@ double studentUpperTail(double t, double degreesOfFreedom)
 double studentQuantile(double p, double degreesOfFreedom)
 {
     return quantile(StudentLaw(degreesOfFreedom), p);
-}
-
-double chiSquaredUpperTail(double x, double degreesOfFreedom)
-{
-    return cdf(complement(ChiSquaredLaw(degreesOfFreedom), x));
 }
 
 Interval meanInterval(const Estimate& estimate, double level)

@@ -38,11 +38,10 @@ struct Estimate {
 };
 Estimate estimateOf(const Moments& moments);
 
-double normalUpperTail(double z);                              // P(Z > z)
-double normalQuantile(double p);                               // z with P(Z < z) = p
-double studentUpperTail(double t, double degreesOfFreedom);    // P(T > t); infinite degrees: normal
-double studentQuantile(double p, double degreesOfFreedom);     // t with P(T < t) = p
-double chiSquaredUpperTail(double x, double degreesOfFreedom); // P(X > x)
+double normalUpperTail(double z);                           // P(Z > z)
+double normalQuantile(double p);                            // z with P(Z < z) = p
+double studentUpperTail(double t, double degreesOfFreedom); // P(T > t); infinite degrees: normal
+double studentQuantile(double p, double degreesOfFreedom);  // t with P(T < t) = p
 
 // Where the mean of a distribution lies, after independent values of it, with probability `level` (Student's t; exact
 // for Gaussian values). One value tells nothing: from -infinity to infinity.

@@ -102,18 +102,14 @@ void checkClaim(const Imf::Header& header, size_t bytes, const std::string& what
     const Imath::Box2i& window = header.dataWindow();
     const int64_t width = int64_t{window.max.x} - window.min.x + 1;
     const int64_t height = int64_t{window.max.y} - window.min.y + 1;
-    if (static_cast<uint64_t>(width * height) > MAX_PIXELS)
-        throw Error("{} is {} x {} pixels, more than the limit of {}.", what, width, height, MAX_PIXELS);
-
     int64_t bytesPerPixel = 0; // over all channels, whether we read them or not
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
         bytesPerPixel += channel.channel().type == Imf::HALF ? 2 : 4;
     const Imf::Compression compression = header.compression();
     const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
     const int64_t claimed = width * height * bytesPerPixel;
-    if (claimed > static_cast<int64_t>(bytes) * (dwa ? MAX_RATIO_DWA : MAX_RATIO))
-        throw Error("{} claims to be {} x {} pixels of {} bytes, too much for a file of {} bytes.", what, width, height,
-                    bytesPerPixel, bytes);
+    requirePlausible(what, static_cast<uint64_t>(width), static_cast<uint64_t>(height),
+                     claimed <= static_cast<int64_t>(bytes) * (dwa ? MAX_RATIO_DWA : MAX_RATIO), bytes);
 
     const int64_t rows = header.hasTileDescription() ? header.tileDescription().ySize : ROWS_AT_ONCE;
     if (width * std::min(rows, height) * bytesPerPixel > MAX_BLOCK_BYTES)

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/scene/gltf_accessor.h"
 #include "engine/scene/gltf_document.h"
+#include "engine/scene/gltf_json_checks.h"
 
 namespace scene::gltf
 {
@@ -35,18 +36,13 @@ std::optional<uint32_t> indexIn(const std::string& pointer, std::string_view pat
 
 size_t countOf(const Object& document, Owner owner)
 {
-    size_t lights = 0;
     switch (owner) {
     case Owner::Node: return document.arraySize("nodes");
     case Owner::Camera: return document.arraySize("cameras");
     case Owner::Material: return document.arraySize("materials");
-    case Owner::Light:
-        document.object("extensions", [&](const Object& extensions) {
-            extensions.object("KHR_lights_punctual", [&](const Object& list) { lights = list.arraySize("lights"); });
-        });
-        break;
+    case Owner::Light: break;
     }
-    return lights;
+    return lightCount(document);
 }
 
 class ChannelReader
@@ -78,9 +74,7 @@ std::optional<ChannelReader::Target> ChannelReader::pointedTo(const Object& targ
 {
     const std::string* pointer = nullptr;
     std::optional<Target> result;
-    target.object("extensions", [&](const Object& extensions) {
-        extensions.object(POINTER, [&](const Object& extension) { pointer = extension.string("pointer"); });
-    });
+    target.extension(POINTER, [&](const Object& extension) { pointer = extension.string("pointer"); });
     if (!pointer) throw Error("{} lacks the \"pointer\" of {}.", target.path(), POINTER);
     for (const PropertyFacts& facts : PROPERTIES) {
         const auto index = indexIn(*pointer, facts.pointer);
@@ -186,10 +180,8 @@ void ChannelReader::readChannel(const Object& animation, const Object& channel, 
     EmissionSource& emission = sources_.emissions[object];
     const Object material = document_.at("materials", object);
     emission.factor = material.vector<3>("emissiveFactor").value_or(glm::dvec3(0));
-    material.object("extensions", [&](const Object& extensions) {
-        extensions.object("KHR_materials_emissive_strength", [&](const Object& extension) {
-            emission.strength = extension.number("emissiveStrength").value_or(1);
-        });
+    material.extension("KHR_materials_emissive_strength", [&](const Object& extension) {
+        emission.strength = extension.number("emissiveStrength").value_or(1);
     });
 }
 

@@ -143,18 +143,20 @@ void append(Scene& scene, std::vector<glm::dvec3>& positions, const MeshPart& pa
         scene.triangles.push_back({{first + a, first + b, first + c}, material});
 }
 
-// Moves the box's centre to the origin and rounds to float32; what has no area then is dropped, unless it moves.
+// Moves the box's centre to the origin and rounds to float32; what has no area then is dropped, unless it moves. Of
+// what moves, triangles may not be finite: at rest they are points.
 void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Motion* motion, Warnings& warnings)
 {
     constexpr double INF = std::numeric_limits<double>::infinity();
     glm::dvec3 low(INF), high(-INF);
     for (const Triangle& triangle : scene.triangles) {
+        if (!std::ranges::all_of(triangle.vertices, [&](uint32_t v) { return isFinite(positions[v]); })) continue;
         for (const uint32_t v : triangle.vertices) {
             low = glm::min(low, positions[v]);
             high = glm::max(high, positions[v]);
         }
     }
-    if (!scene.triangles.empty()) {
+    if (low.x <= high.x) { // there is one
         const glm::dvec3 size = high - low;
         const double largest = std::max({size.x, size.y, size.z});
         if (!(largest <= LARGEST_SCENE))
@@ -217,7 +219,8 @@ MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& s
                 const size_t index =
                     primitive.material < 0 ? scene.materials.size() - 1 : static_cast<size_t>(primitive.material);
                 const Material& material = scene.materials[index];
-                const Motion::Part part{.nodeFromMesh = instance,
+                const Motion::Part part{.name = where,
+                                        .nodeFromMesh = instance,
                                         .firstVertex = static_cast<uint32_t>(positions.size()),
                                         .firstTriangle = static_cast<uint32_t>(scene.triangles.size())};
                 append(scene, positions,

@@ -289,8 +289,7 @@ void checkInstancing(const Object& document, const Object& instancing)
 
 void checkNodes(const Object& document)
 {
-    size_t lights = 0;
-    document.extension("KHR_lights_punctual", [&](const Object& list) { lights = list.arraySize("lights"); });
+    const size_t lights = lightCount(document);
     constexpr uint32_t NO_PARENT = ~0u;
     std::vector<uint32_t> parents(document.arraySize("nodes"), NO_PARENT);
     document.eachObject("nodes", [&](const Object& node, size_t i) {
@@ -380,6 +379,13 @@ void checkAnimations(const Object& document)
 }
 
 } // namespace
+
+size_t lightCount(const Object& document)
+{
+    size_t count = 0;
+    document.extension("KHR_lights_punctual", [&](const Object& list) { count = list.arraySize("lights"); });
+    return count;
+}
 
 bool isSupportedExtension(const std::string& name)
 {

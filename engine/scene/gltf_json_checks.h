@@ -12,6 +12,8 @@ namespace scene::gltf
 // every required extension is supported. Throws Error.
 void checkJson(const Json& document);
 
+size_t lightCount(const Object& document); // of KHR_lights_punctual
+
 bool isSupportedExtension(const std::string& name);
 
 // Bytes of one element, with the padding of small matrix columns.

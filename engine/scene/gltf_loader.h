@@ -14,7 +14,7 @@ struct LoadOptions {
     std::function<void(const std::string& what, double fraction)>
         progress;           // may be empty; called on the caller's thread
     bool sky = true;        // a file without light gets a uniform sky; false: the caller has an environment for it
-    bool animations = true; // false: they are not read, whatever is wrong with them; nothing moves
+    bool animations = true; // false: they are checked for structure and not read; nothing moves
     std::filesystem::path assetRoot; // buffers and textures may lie below it, too; empty: below the file's folder alone
 };
 

@@ -5,7 +5,6 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_materials.h"
-#include "engine/scene/gltf_values.h"
 
 namespace scene::gltf
 {
@@ -16,11 +15,6 @@ namespace
 constexpr std::array<const char*, ATTRIBUTES> NAMES = {"POSITION",   "NORMAL",     "TANGENT",
                                                        "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 constexpr uint64_t MAX_DISPLACEMENTS = uint64_t{1} << 24; // of all morph targets that are kept: 1.4 GB
-
-bool isFinite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 template <class Attributes>
 int find(const Attributes& attributes, const std::string& name)
@@ -45,7 +39,7 @@ struct MeshPartReader::Source {
     std::vector<std::array<const Accessor*, ATTRIBUTES>> targets;
     std::vector<std::array<const Accessor*, 2>> skin; // joints and weights of each set
     size_t jointCount = 0;                            // 0: not skinned
-    bool wantsUv = false, hasTangents = false;
+    bool hasTangents = false;
 };
 
 const Accessor& MeshPartReader::accessor(int index)
@@ -59,7 +53,7 @@ MeshPartReader::Source MeshPartReader::open(const tinygltf::Primitive& primitive
 {
     Source source{.where = where, .jointCount = jointCount, .hasTangents = material.normalTexture.image != NONE};
     std::array<bool, 2> wantsUv = {};
-    eachTexture(material, [&](const TextureUse& use) { wantsUv[use.uvSet] = source.wantsUv = true; });
+    eachTexture(material, [&](const TextureUse& use) { wantsUv[use.uvSet] = true; });
     source.targets.resize(primitive.targets.size());
     for (uint32_t a = 0; a < ATTRIBUTES; ++a) {
         const int base = find(primitive.attributes, NAMES[a]);
@@ -197,44 +191,44 @@ MeshVertices MeshPartReader::gather(const Source& source, std::span<const uint32
     return vertices;
 }
 
+// Of a part where it stands at rest.
+void MeshPartReader::warn(const MeshPart& part, const std::string& where, const Material& material)
+{
+    const auto& [uvs, colors, normals] = part.replaced;
+    if (uvs > 0) warnings_.add("Took 0 for a texture coordinate that is not finite or beyond 1e6.", uvs);
+    if (colors > 0) warnings_.add("Clamped a vertex color to the range from 0 to 1.", colors);
+    bool wantsUv = false;
+    eachTexture(material, [&](const TextureUse&) { wantsUv = true; });
+    if (wantsUv && !part.hasUv[0] && !part.hasUv[1])
+        warnings_.add(fmt::format("{} has a texture but no texture coordinates for it.", where));
+    const auto dropped = std::ranges::count_if(part.triangles, [&](const auto& t) { return !isFinite(part, t); });
+    if (dropped > 0)
+        warnings_.add("Dropped a triangle with a vertex that is not finite.", static_cast<size_t>(dropped));
+    if (normals > 0) warnings_.add("Replaced a normal that has no direction by that of the triangles.", normals);
+}
+
 MeshPart MeshPartReader::read(const tinygltf::Primitive& primitive, const std::string& where,
                               const Placement& placement, const Material& material)
 {
     const Source source = open(primitive, where, placement.worldFromSkin.size(), material);
-    const bool flat = !source.base[NORMAL];
     MeshPart part{.hasUv = {source.base[TEXCOORD_0] != nullptr, source.base[TEXCOORD_1] != nullptr},
                   .hasTangents = source.hasTangents,
                   .hasColors = source.base[COLOR_0] != nullptr};
     part.triangles = readTriangles(primitive, source.base[POSITION]->count(), where);
-    const std::vector<uint32_t> elements = usedElements(part.triangles, source.base[POSITION]->count(), flat);
+    const std::vector<uint32_t> elements =
+        usedElements(part.triangles, source.base[POSITION]->count(), !source.base[NORMAL]);
 
     // Through a block that stays in the cache: the primitive itself is never in memory twice.
     constexpr size_t BLOCK = 1024;
-    Replaced replaced;
     part.vertices.resize(elements.size());
     for (size_t i = 0; i < elements.size(); i += BLOCK) {
         const size_t count = std::min(BLOCK, elements.size() - i);
         const MeshVertices block = gather(source, std::span(elements).subspan(i, count), placement.morphWeights);
-        poseVertices(block, placement, std::span(part.vertices).subspan(i, count), replaced);
+        poseVertices(block, placement, std::span(part.vertices).subspan(i, count), part.replaced);
     }
-    if (replaced.uvs > 0)
-        warnings_.add("Took 0 for a texture coordinate that is not finite or beyond 1e6.", replaced.uvs);
-    if (replaced.colors > 0) warnings_.add("Clamped a vertex color to the range from 0 to 1.", replaced.colors);
-    if (source.wantsUv && !part.hasUv[0] && !part.hasUv[1])
-        warnings_.add(fmt::format("{} has a texture but no texture coordinates for it.", where));
-
+    warn(part, where, material);
+    std::erase_if(part.triangles, [&](const auto& triangle) { return !isFinite(part, triangle); });
     turnMirrored(part);
-    const size_t dropped = std::erase_if(part.triangles, [&](const auto& triangle) {
-        return !std::all_of(triangle.begin(), triangle.end(),
-                            [&](uint32_t v) { return isFinite(part.vertices[v].position); });
-    });
-    if (dropped > 0) warnings_.add("Dropped a triangle with a vertex that is not finite.", dropped);
-
-    const auto hasNormal = [](const Vertex& vertex) { return vertex.normal != glm::dvec3(0); };
-    const auto without = part.vertices.size() -
-                         static_cast<size_t>(std::count_if(part.vertices.begin(), part.vertices.end(), hasNormal));
-    if (!flat && without > 0)
-        warnings_.add("Replaced a normal that has no direction by that of the triangles.", without);
     completeNormals(part);
     if (part.hasTangents) completeTangents(part, material.normalTexture, true);
     return part;
@@ -276,6 +270,14 @@ Mesh MeshPartReader::readMesh(const tinygltf::Primitive& primitive, const std::s
     if (dropped > 0) warnings_.add("Dropped a triangle with a vertex that is not finite.", dropped);
     splitSeams(mesh, material.normalTexture);
     return mesh;
+}
+
+MeshPart MeshPartReader::place(const Mesh& mesh, const std::string& where, const Placement& placement,
+                               const Material& material)
+{
+    MeshPart part = poseMesh(mesh, placement, material.normalTexture);
+    warn(part, where, material);
+    return part;
 }
 
 } // namespace scene::gltf

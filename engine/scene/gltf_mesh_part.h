@@ -30,6 +30,9 @@ class MeshPartReader
     Mesh readMesh(const tinygltf::Primitive& primitive, const std::string& where, size_t jointCount,
                   const Material& material);
 
+    // Such a mesh at rest, with the warnings of read(). Its triangles stay all, also those that are not finite.
+    MeshPart place(const Mesh& mesh, const std::string& where, const Placement& placement, const Material& material);
+
     const Accessor& accessor(int index); // opened once
 
   private:
@@ -41,6 +44,7 @@ class MeshPartReader
                                                        const std::string& where);
     std::vector<uint32_t> usedElements(std::vector<std::array<uint32_t, 3>>& triangles, size_t elementCount, bool flat);
     MeshVertices gather(const Source& source, std::span<const uint32_t> elements, std::span<const double> weights);
+    void warn(const MeshPart& part, const std::string& where, const Material& material);
     void gatherInfluences(const Source& source, std::span<const uint32_t> elements, MeshVertices& vertices);
 
     const Document& document_;

@@ -10,41 +10,25 @@ namespace scene::gltf
 namespace
 {
 
-// All nodes of the file, parents first, and their parents.
-struct Family {
-    explicit Family(const std::vector<tinygltf::Node>& nodes) : parents(nodes.size(), NONE)
-    {
-        for (uint32_t i = 0; i < nodes.size(); ++i) {
-            for (const int child : nodes[i].children) parents[static_cast<size_t>(child)] = i;
-        }
-        for (uint32_t i = 0; i < nodes.size(); ++i) {
-            if (parents[i] == NONE) order.push_back(i);
-        }
-        for (size_t i = 0; i < order.size(); ++i) { // grows
-            const std::vector<int>& children = nodes[order[i]].children;
-            order.insert(order.end(), children.begin(), children.end());
-        }
-    }
-    std::vector<uint32_t> parents; // NONE: a root
-    std::vector<uint32_t> order;
-};
-
 bool isOf(const Channel& channel, Owner owner)
 {
     return factsOf(channel.property).owner == owner;
 }
 
-// Nodes whose place in the world, or visibility, changes at some time.
-std::vector<bool> movingNodes(const Motion& motion, const Family& family)
+// Nodes whose place in the world, or visibility, changes at some time; or whose visibility would, if its animation were
+// not broken: they are not hidden for good, so a pose must hide them.
+std::vector<bool> movingNodes(const Motion& motion, const Document& document, const NodeTree& tree)
 {
-    std::vector<bool> moving(family.parents.size(), false);
+    std::vector<bool> moving(tree.parents.size(), false);
+    for (const auto& [property, node] : document.animations.moved)
+        if (property == Property::Visible) moving[node] = true;
     for (const Animation& animation : motion.animations) {
         for (const Channel& channel : animation.channels) {
             if (isOf(channel, Owner::Node) && channel.property != Property::Weights) moving[channel.object] = true;
         }
     }
-    for (const uint32_t i : family.order) {
-        if (family.parents[i] != NONE && moving[family.parents[i]]) moving[i] = true;
+    for (const uint32_t i : tree.order) {
+        if (tree.parents[i] != NONE && moving[tree.parents[i]]) moving[i] = true;
     }
     return moving;
 }
@@ -62,14 +46,13 @@ void renumber(Motion& motion, Owner owner, NewIndex&& newIndex)
     }
 }
 
-void addNodes(MotionPlan& plan, const Document& document, const NodeTree& tree, const Family& family,
-              const std::vector<bool>& needed)
+void addNodes(MotionPlan& plan, const Document& document, const NodeTree& tree, const std::vector<bool>& needed)
 {
     Warnings said; // by resolveNodes
-    for (const uint32_t i : family.order) {
+    for (const uint32_t i : tree.order) {
         if (!needed[i]) continue;
         const tinygltf::Node& source = document.model.nodes[i];
-        const uint32_t parent = family.parents[i];
+        const uint32_t parent = tree.parents[i];
         Motion::Node node{.parent = parent == NONE ? NONE : plan.nodeOf[parent],
                           .rest = readTransform(source, i, said),
                           .visible = isVisible(source),
@@ -107,8 +90,7 @@ MotionPlan planMotion(const Document& document, const NodeTree& tree, MeshPartRe
     plan.motion->animations = readAnimations(document, plan.motion->numbers, warnings);
 
     const auto& nodes = document.model.nodes;
-    const Family family(nodes);
-    const std::vector<bool> moving = movingNodes(*plan.motion, family);
+    const std::vector<bool> moving = movingNodes(*plan.motion, document, tree);
     std::vector<bool> movesWeights(nodes.size(), false);
     for (const Animation& animation : plan.motion->animations) {
         for (const Channel& channel : animation.channels)
@@ -135,7 +117,7 @@ MotionPlan planMotion(const Document& document, const NodeTree& tree, MeshPartRe
         for (const int joint : document.model.skins[s].joints)
             if (neededSkins[s]) needed[static_cast<size_t>(joint)] = true;
     }
-    addNodes(plan, document, tree, family, needed);
+    addNodes(plan, document, tree, needed);
     addSkins(plan, document, neededSkins, reader);
     renumber(*plan.motion, Owner::Node, [&](uint32_t node) { return plan.nodeOf[node]; });
     return plan;
@@ -146,25 +128,24 @@ MeshPart addPart(MotionPlan& plan, const Document& document, MeshPartReader& rea
 {
     Motion& motion = *plan.motion;
     const tinygltf::Node& node = document.model.nodes[nodeIndex];
-    const std::string where = fmt::format("meshes[{}].primitives[{}]", node.mesh, primitiveIndex);
+    const std::string where = part.name;
     const auto [mesh, isNew] = plan.meshOf.try_emplace({node.mesh, primitiveIndex, placement.worldFromSkin.size()},
                                                        static_cast<uint32_t>(motion.meshes.size()));
     if (isNew)
         motion.meshes.push_back(
             reader.readMesh(document.model.meshes[static_cast<size_t>(node.mesh)].primitives[primitiveIndex], where,
                             placement.worldFromSkin.size(), material));
-    part.name = fmt::format("{} at nodes[{}]", where, nodeIndex);
+    part.name += fmt::format(" at nodes[{}]", nodeIndex);
     part.node = plan.nodeOf[nodeIndex];
     part.mesh = mesh->second;
     if (node.skin >= 0) part.skin = plan.skinOf[static_cast<size_t>(node.skin)];
     motion.parts.push_back(std::move(part));
-    return poseMesh(motion.meshes[mesh->second], placement, material.normalTexture);
+    return reader.place(motion.meshes[mesh->second], where, placement, material);
 }
 
 void completeMotion(MotionPlan& plan, const Document& document, const std::vector<WorldCamera>& cameras,
                     const std::vector<WorldLight>& lights, const std::vector<uint32_t>& materialOf, Scene& scene)
 {
-    if (!plan.motion) return;
     Motion& motion = *plan.motion;
     const std::set<std::pair<Property, uint32_t>>& moved = document.animations.moved;
     const auto movesAny = [&](Owner owner, uint32_t object) {

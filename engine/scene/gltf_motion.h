@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <string>
 #include <tuple>
 #include <vector>
 
@@ -27,13 +26,15 @@ struct MotionPlan {
 // Animations, and the nodes and skins that they move. Throws Error.
 MotionPlan planMotion(const Document& document, const NodeTree& tree, MeshPartReader& reader, Warnings& warnings);
 
-// A primitive of nodes[node] joins Motion::parts; its mesh is read unless another part has it. `part` says where it
-// will lie in the flat scene. Returns its vertices and triangles at rest.
+// A primitive of nodes[node] joins Motion::parts; its mesh is read unless another part has it. `part` says which
+// primitive it is (its name) and where it will lie in the flat scene. Returns its vertices and triangles at rest; some
+// of these may not be finite, with a warning.
 MeshPart addPart(MotionPlan& plan, const Document& document, MeshPartReader& reader, size_t primitive, uint32_t node,
                  const Placement& placement, Motion::Part part, const Material& material);
 
-// Lights, cameras and materials, and what the channels move among all of it: what the scene does not have, none moves.
-// `materialOf` says where materials of the file are in the scene, or NONE; the scene's are as the file states them.
+// Of a plan with a motion: lights, cameras and materials, and what the channels move among all of it. What the scene
+// does not have, none moves. `materialOf` says where materials of the file are in the scene, or NONE; the scene's are
+// as the file states them.
 void completeMotion(MotionPlan& plan, const Document& document, const std::vector<WorldCamera>& cameras,
                     const std::vector<WorldLight>& lights, const std::vector<uint32_t>& materialOf, Scene& scene);
 

@@ -12,7 +12,7 @@ namespace scene::gltf
 namespace
 {
 
-std::vector<int> sceneRoots(const Document& document, const std::vector<uint32_t>& roots, Warnings& warnings)
+std::vector<int> sceneRoots(const Document& document, const NodeTree& tree, Warnings& warnings)
 {
     const tinygltf::Model& model = document.model;
     if (!model.scenes.empty()) {
@@ -21,7 +21,10 @@ std::vector<int> sceneRoots(const Document& document, const std::vector<uint32_t
         return model.scenes[static_cast<size_t>(std::max(model.defaultScene, 0))].nodes;
     }
     if (!model.nodes.empty()) warnings.add("The file has no scene: took all its nodes.");
-    return {roots.begin(), roots.end()};
+    std::vector<int> roots;
+    for (const uint32_t i : tree.order)
+        if (tree.parents[i] == NONE) roots.push_back(static_cast<int>(i));
+    return roots;
 }
 
 } // namespace
@@ -60,38 +63,34 @@ NodeTree resolveNodes(const Document& document, Warnings& warnings)
 {
     // Iterative throughout: chains may be as long as the file.
     const auto& nodes = document.model.nodes;
-    std::vector<bool> isChild(nodes.size(), false);
-    for (const tinygltf::Node& node : nodes) {
-        for (const int child : node.children) isChild[static_cast<size_t>(child)] = true;
-    }
     NodeTree tree;
+    tree.parents.resize(nodes.size(), NONE);
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        for (const int child : nodes[i].children) tree.parents[static_cast<size_t>(child)] = i;
+    }
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        if (tree.parents[i] == NONE) tree.order.push_back(i);
+    }
+    for (size_t i = 0; i < tree.order.size(); ++i) { // grows
+        const std::vector<int>& children = nodes[tree.order[i]].children;
+        tree.order.insert(tree.order.end(), children.begin(), children.end());
+    }
+
     tree.worldFromNode.resize(nodes.size());
     tree.hidden.resize(nodes.size());
     const auto hides = [&](uint32_t i) {
         return !isVisible(nodes[i]) && !document.animations.moved.contains({Property::Visible, i});
     };
-    std::vector<uint32_t> roots, pending;
-    for (uint32_t i = 0; i < nodes.size(); ++i) {
-        if (isChild[i]) continue;
-        roots.push_back(i);
-        tree.worldFromNode[i] = readTransform(nodes[i], i, warnings).toMatrix();
-        tree.hidden[i] = hides(i);
-        pending.push_back(i);
-    }
-    while (!pending.empty()) {
-        const uint32_t parent = pending.back();
-        pending.pop_back();
-        for (const int child : nodes[parent].children) {
-            const auto i = static_cast<uint32_t>(child);
-            tree.worldFromNode[i] = tree.worldFromNode[parent] * readTransform(nodes[i], i, warnings).toMatrix();
-            tree.hidden[i] = tree.hidden[parent] || hides(i);
-            pending.push_back(i);
-        }
+    for (const uint32_t i : tree.order) {
+        const uint32_t parent = tree.parents[i];
+        const glm::dmat4 parentFromNode = readTransform(nodes[i], i, warnings).toMatrix();
+        tree.worldFromNode[i] = parent == NONE ? parentFromNode : tree.worldFromNode[parent] * parentFromNode;
+        tree.hidden[i] = hides(i) || (parent != NONE && tree.hidden[parent]);
     }
 
     std::vector<bool> seen(nodes.size(), false);
-    const std::vector<int> shownRoots = sceneRoots(document, roots, warnings);
-    pending.assign(shownRoots.rbegin(), shownRoots.rend());
+    const std::vector<int> roots = sceneRoots(document, tree, warnings);
+    std::vector<uint32_t> pending(roots.rbegin(), roots.rend());
     while (!pending.empty()) {
         const uint32_t i = pending.back();
         pending.pop_back();

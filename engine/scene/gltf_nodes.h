@@ -13,6 +13,8 @@ namespace scene::gltf
 {
 
 struct NodeTree {
+    std::vector<uint32_t> parents;         // of every node of the file; NONE: it is a root
+    std::vector<uint32_t> order;           // every node, parents first
     std::vector<glm::dmat4> worldFromNode; // for every node of the file, float64
     std::vector<uint32_t> visible;         // the nodes of the default scene, parents first, each once
     std::vector<bool> hidden;              // for every node: KHR_node_visibility hides its mesh and light for good

@@ -94,6 +94,16 @@ void duplicate(MeshVertices& vertices, uint32_t original)
 
 } // namespace
 
+bool isFinite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool isFinite(const MeshPart& part, const std::array<uint32_t, 3>& triangle)
+{
+    return std::ranges::all_of(triangle, [&](uint32_t v) { return isFinite(part.vertices[v].position); });
+}
+
 void poseVertices(const MeshVertices& vertices, const Placement& placement, std::span<Vertex> posed, Replaced& replaced)
 {
     CHECK_EQ(posed.size(), vertices.count);
@@ -112,7 +122,10 @@ void poseVertices(const MeshVertices& vertices, const Placement& placement, std:
         Vertex& vertex = posed[v];
         vertex.mirrored = transform.side < 0;
         vertex.position = glm::dvec3(transform.world * glm::dvec4(vec3(POSITION, v), 1));
-        if (has(NORMAL)) vertex.normal = unitOrZero(transform.side * (transform.normals * vec3(NORMAL, v)));
+        if (has(NORMAL)) {
+            vertex.normal = unitOrZero(transform.side * (transform.normals * vec3(NORMAL, v)));
+            if (vertex.normal == glm::dvec3(0)) ++replaced.normals;
+        }
         if (has(TANGENT)) {
             const double handedness = at(TANGENT, v)[3];
             const glm::dvec3 direction = unitOrZero(glm::dmat3(transform.world) * vec3(TANGENT, v));
@@ -148,10 +161,12 @@ void turnMirrored(MeshPart& part)
 void completeNormals(MeshPart& part)
 {
     std::vector<glm::dvec3> sums(part.vertices.size(), glm::dvec3(0)); // weighted by area
-    for (const auto& [a, b, c] : part.triangles) {
+    for (const auto& triangle : part.triangles) {
+        if (!isFinite(part, triangle)) continue;
+        const auto& [a, b, c] = triangle;
         const glm::dvec3& origin = part.vertices[a].position;
         const glm::dvec3 area = glm::cross(part.vertices[b].position - origin, part.vertices[c].position - origin);
-        for (const uint32_t v : {a, b, c}) sums[v] += area;
+        for (const uint32_t v : triangle) sums[v] += area;
     }
     for (size_t v = 0; v < part.vertices.size(); ++v) {
         glm::dvec3& normal = part.vertices[v].normal;
@@ -168,8 +183,7 @@ MeshPart poseMesh(const Mesh& mesh, const Placement& placement, const TextureUse
                   .hasUv = {!values[TEXCOORD_0].empty(), !values[TEXCOORD_1].empty()},
                   .hasTangents = mesh.hasTangents,
                   .hasColors = !values[COLOR_0].empty()};
-    Replaced replaced;
-    poseVertices(mesh.vertices, placement, part.vertices, replaced);
+    poseVertices(mesh.vertices, placement, part.vertices, part.replaced);
     turnMirrored(part);
     completeNormals(part);
     if (part.hasTangents) completeTangents(part, normalTexture, false);
@@ -180,8 +194,7 @@ void splitSeams(Mesh& mesh, const TextureUse& use)
 {
     if (!mesh.hasTangents) return;
     MeshPart part{.vertices = std::vector<Vertex>(mesh.vertices.count), .triangles = mesh.triangles};
-    Replaced replaced;
-    poseVertices(mesh.vertices, {}, part.vertices, replaced);
+    poseVertices(mesh.vertices, {}, part.vertices, part.replaced);
     completeNormals(part);
     for (const uint32_t original : completeTangents(part, use, true)) duplicate(mesh.vertices, original);
     mesh.triangles = std::move(part.triangles);

@@ -63,19 +63,26 @@ struct Vertex {
     bool mirrored = false; // by its transform: the winding turns
 };
 
+// What had to be replaced by something sane.
+struct Replaced {
+    size_t uvs = 0;     // not finite or beyond 1e6, by 0
+    size_t colors = 0;  // outside 0 to 1
+    size_t normals = 0; // without a direction, by that of the triangles
+};
+
 struct MeshPart {
     std::vector<Vertex> vertices;
     std::vector<std::array<uint32_t, 3>> triangles; // counter-clockwise from the front
     std::array<bool, 2> hasUv = {};
     bool hasTangents = false;
     bool hasColors = false;
+    Replaced replaced;
 };
 
-// What had to be replaced by something sane.
-struct Replaced {
-    size_t uvs = 0;    // not finite or beyond 1e6, by 0
-    size_t colors = 0; // outside 0 to 1
-};
+bool isFinite(const glm::dvec3& v);
+
+// Whether all corners of one of its triangles are. Those that are not give their vertices no normal and no tangent.
+bool isFinite(const MeshPart& part, const std::array<uint32_t, 3>& triangle);
 
 // The vertices in the world, one of `posed` for each; normals and tangents as far as they are given.
 void poseVertices(const MeshVertices& vertices, const Placement& placement, std::span<Vertex> posed,

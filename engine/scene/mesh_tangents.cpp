@@ -65,6 +65,7 @@ std::vector<uint32_t> completeTangents(MeshPart& part, const TextureUse& use, bo
     const size_t originalCount = part.vertices.size();
     std::vector<uint32_t> originals; // of the copies
     for (auto& triangle : part.triangles) {
+        if (!isFinite(part, triangle)) continue;
         std::array<glm::dvec3, 3> positions;
         std::array<glm::dvec2, 3> uvs;
         for (size_t i = 0; i < 3; ++i) {

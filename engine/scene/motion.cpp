@@ -1,14 +1,13 @@
 #include "engine/scene/motion.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
-#include "engine/base/shown.h"
+#include "engine/scene/choice.h"
 
 namespace scene
 {
@@ -114,18 +113,21 @@ void hidePart(Scene& scene, const Motion::Part& part, const Mesh& mesh)
         scene.triangles[t].vertices.fill(part.firstVertex);
 }
 
-void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, double seconds)
+void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, bool atRest, double seconds)
 {
     constexpr double FARTHEST = LARGEST_SCENE / 2;
     std::vector<bool> lost(posed.vertices.size(), false);
     for (size_t v = 0; v < posed.vertices.size(); ++v) {
         const glm::dvec3 position = posed.vertices[v].position - scene.origin;
-        const double far = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-        lost[v] = !(far <= FARTHEST) || std::isnan(position.x + position.y + position.z);
+        lost[v] = !glm::all(glm::lessThanEqual(glm::abs(position), glm::dvec3(FARTHEST))); // also where one is NaN
         scene.positions[part.firstVertex + v] = lost[v] ? glm::vec3(0) : glm::vec3(position);
     }
     for (size_t t = 0; t < posed.triangles.size(); ++t) {
         auto& vertices = scene.triangles[part.firstTriangle + t].vertices;
+        if (atRest && !isFinite(posed, posed.triangles[t])) { // the loader has said so
+            vertices.fill(part.firstVertex + posed.triangles[t][0]);
+            continue;
+        }
         std::array<glm::dvec3, 3> corners;
         for (size_t i = 0; i < 3; ++i) {
             const uint32_t v = posed.triangles[t][i];
@@ -210,20 +212,12 @@ std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& ch
     if (choice == "off") return {};
     const std::vector<Animation> none;
     const std::vector<Animation>& animations = scene.motion ? scene.motion->animations : none;
-    std::vector<uint32_t> chosen;
-    const bool all = choice == "all";
-    for (uint32_t i = 0; i < animations.size() && (all || chosen.empty()); ++i)
-        if (all || animations[i].name == choice) chosen.push_back(i);
-    uint32_t index = 0;
-    const auto end = choice.data() + choice.size();
-    const auto [rest, problem] = std::from_chars(choice.data(), end, index);
-    if (chosen.empty() && problem == std::errc() && rest == end && index < animations.size()) chosen.push_back(index);
-    if (chosen.empty() && !all) {
-        std::string names;
-        for (uint32_t i = 0; i < std::min<size_t>(animations.size(), 20); ++i)
-            names += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, animations[i].name);
-        throw Error("The scene has no animation \"{}\": it has {}{}.", shown(choice),
-                    animations.empty() ? "none" : names, animations.size() > 20 ? " and more" : "");
+    std::vector<uint32_t> chosen(animations.size());
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    if (choice != "all") {
+        std::vector<std::string> names;
+        for (const Animation& animation : animations) names.push_back(animation.name);
+        chosen = {chooseName(names, choice, "animation")};
     }
     for (const uint32_t i : chosen)
         if (!animations[i].fault.empty())
@@ -260,7 +254,7 @@ void pose(Scene& scene, std::span<const uint32_t> animations, double seconds)
                             .morphWeights = state.nodes[part.node].weights};
         if (part.skin != NONE) placement.worldFromSkin = world.worldFromSkin[part.skin];
         const TextureUse& normalTexture = scene.materials[scene.triangles[part.firstTriangle].material].normalTexture;
-        writePart(scene, part, poseMesh(mesh, placement, normalTexture), seconds);
+        writePart(scene, part, poseMesh(mesh, placement, normalTexture), animations.empty(), seconds);
     }
     placeLights(scene, motion, state, world);
     placeCameras(scene, motion, state, world);

@@ -33,7 +33,8 @@ struct Motion {
     };
     // One primitive of one mesh at one place: vertices and triangles that follow each other in the flat scene, in every
     // pose the same ones in the same order. Where a triangle's transform mirrors, its corners 1 and 2 change places;
-    // where it has no area, it is its first corner three times; where the part is hidden, the part's first vertex.
+    // where it has no area, or is not finite at rest, it is its first corner three times; where the part is hidden, the
+    // part's first vertex.
     struct Part {
         std::string name; // for messages: meshes[0].primitives[1] at nodes[3]
         uint32_t node = 0;
@@ -81,8 +82,8 @@ struct Motion {
     uint64_t bytes() const; // that it takes, roughly
 };
 
-// Which animations a name means: that name, else its index, "all" or "off". Throws Error: there is none, or it cannot
-// be played.
+// Which animations a choice means: "off", "all", else that name, else its index. Throws Error: there is none, or it
+// cannot be played.
 std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& choice);
 
 // Whether two of them move the same property of the same object: then the first one does.
@@ -91,7 +92,7 @@ bool contested(const Motion& motion, std::span<const uint32_t> animations);
 // The flat scene as these animations (indices; none: at rest) have it at `seconds`. It depends on nothing else: what
 // moves is written anew, whatever the scene's pose was. Scene::origin, the counts of vertices, triangles, lights,
 // cameras and materials and their order are those of rest. Without Scene::motion nothing changes. Throws Error, and
-// leaves the pose unfinished, where something is not finite or too far away.
+// leaves the pose unfinished, where something is too far away or, unless at rest, not finite.
 void pose(Scene& scene, std::span<const uint32_t> animations, double seconds);
 
 } // namespace scene

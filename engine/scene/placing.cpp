@@ -1,6 +1,5 @@
 #include "engine/scene/placing.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +14,7 @@ namespace
 bool isPlaced(const glm::dvec3& position)
 {
     constexpr double FARTHEST = 1e12; // metres; its square is far inside float32
-    return std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) < FARTHEST;
+    return glm::all(glm::lessThan(glm::abs(position), glm::dvec3(FARTHEST))); // not where one is NaN
 }
 
 } // namespace

@@ -42,7 +42,7 @@ CONFINED = {
     r"mpi\.h": ["ui/ranks_mpi.cpp"],
     r"CLI/": ["ui", "tests"],
     r"gtest/": ["tests"],
-    r"boost/": ["engine/base/statistics.cpp"],
+    r"boost/": ["engine/base/statistics.cpp", "tests/support/chi_squared.cpp"],
     r"kainjow/": ["ui/report/page.cpp"],
     r"tiny_gltf\.h": ["engine/scene"],
 }

@@ -81,8 +81,8 @@ TEST(ChooseCamera, ListsTheCamerasWhenThereIsNoSuch)
             passes::chooseCamera(threeCameras(), wrong);
             FAIL() << wrong;
         } catch (const Error& error) {
-            EXPECT_EQ(std::string(error.what()), "Scene \"room\" has no camera \"" + std::string(wrong) +
-                                                     "\"; it has: 0 \"door\", 1 \"2\", 2 \"door\".");
+            EXPECT_EQ(std::string(error.what()), "The scene has no camera \"" + std::string(wrong) +
+                                                     "\": it has 0 \"door\", 1 \"2\", 2 \"door\".");
         }
     }
 }

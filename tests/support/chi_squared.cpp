@@ -1,13 +1,19 @@
 #include "tests/support/chi_squared.h"
 
 #include "engine/base/check.h"
-#include "engine/base/statistics.h"
 
 #include <cmath>
 #include <vector>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 namespace statistics
 {
+
+double chiSquaredUpperTail(double x, double degreesOfFreedom)
+{
+    return cdf(complement(boost::math::chi_squared(degreesOfFreedom), x));
+}
 
 ChiSquared chiSquaredTest(std::span<const double> observed, std::span<const double> expected, double minimumExpected)
 {

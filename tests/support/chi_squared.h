@@ -7,6 +7,8 @@
 namespace statistics
 {
 
+double chiSquaredUpperTail(double x, double degreesOfFreedom); // P(X > x)
+
 // Pearson's test that `observed` counts come from `expected` ones. Neighboring bins are pooled until each holds at
 // least `minimumExpected`. The totals must agree within rounding: compare equal sample counts.
 struct ChiSquared {

@@ -1,6 +1,8 @@
 #include "tests/support/posed_gltf.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>

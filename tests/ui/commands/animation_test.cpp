@@ -2,10 +2,10 @@
 
 #include "tests/support/trichrome.h"
 
+#include <map>
+
 #include "engine/image/image.h"
 #include "tests/support/tiny_gltf.h"
-
-#include <fmt/format.h>
 
 namespace
 {
