@@ -98,7 +98,8 @@ class Renderer
     const std::shared_ptr<PipelinePool>& pipelines() { return scene_->pipelines; }
     gpu::Device& device() { return device_; }
     // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
-    // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit.
+    // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit. A scene
+    // that moves must be in the pose of the state's last frame.
     RendererState save(); // waits
     void restore(const RendererState& state);
 

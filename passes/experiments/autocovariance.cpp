@@ -58,7 +58,7 @@ constexpr double RESOLUTION = 4 * 5.96e-8;
 
 } // namespace
 
-Chain::Chain(Renderer& renderer, CameraAt cameraAt) : renderer_(renderer), cameraAt_(std::move(cameraAt))
+Chain::Chain(Renderer& renderer, Sequence sequence) : renderer_(renderer), sequence_(std::move(sequence))
 {
     renderer_.reset();
 }
@@ -67,12 +67,12 @@ void Chain::step()
 {
     const uint32_t runs = renderer_.runs();
     ++frame_;
-    if (cameraAt_) renderer_.setCamera(cameraAt_(frame_ - 1));
+    sequence_.bring(renderer_, int64_t(frame_) - 1);
     renderer_.renderFrame();
     if (std::has_single_bit(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
     if (frame_ == 1 || !std::has_single_bit(frame_)) return;
     const image::Image now = renderer_.read(LAST_FRAME);
-    if (!cameraAt_) {
+    if (!sequence_.moves()) {
         points_.push_back(pointOf(frame_, before_.pixels, now.pixels, runs));
         return;
     }

@@ -8,8 +8,8 @@
 #include <glm/glm.hpp>
 
 #include "engine/base/batches.h"
-#include "passes/camera_path.h"
 #include "passes/renderer.h"
+#include "passes/sequence.h"
 
 namespace passes
 {
@@ -24,19 +24,19 @@ struct ChainPoint {
 };
 
 // Takes the points M = 2, 4, 8, ... of a renderer's runs, frame by frame: all from one chain, since M_c >= M does not
-// bind before. With a moving camera a pixel of frame M pairs with the one that saw the same point in frame M-1; pixels
+// bind before. Where something moves a pixel of frame M pairs with the one that saw the same point in frame M-1; pixels
 // without one do not count.
 class Chain
 {
   public:
-    explicit Chain(Renderer& renderer, CameraAt cameraAt = {}); // starts over
+    explicit Chain(Renderer& renderer, Sequence sequence = {}); // starts over
     void step();                                                // renders the next frame
     uint32_t frame() const { return frame_; }                   // the last one, counted from 1
     const std::vector<ChainPoint>& points() const { return points_; }
 
   private:
     Renderer& renderer_;
-    CameraAt cameraAt_;
+    Sequence sequence_;
     uint32_t frame_ = 0;
     image::Image before_;
     std::vector<ChainPoint> points_;

@@ -23,11 +23,11 @@ uint32_t lastFrame(const Settings& settings)
 }
 
 Correlator::Correlator(std::unique_ptr<Renderer> emitters, const Settings& base,
-                       const std::vector<NamedMethod>& methods, CameraAt cameraAt)
-    : cameraAt_(std::move(cameraAt)), emitters_(std::move(emitters)),
-      sameView_(!cameraAt_ && emitters_->scene().viewRepeats(base)), renderers_(1 + methods.size())
+                       const std::vector<NamedMethod>& methods, Sequence sequence)
+    : sequence_(std::move(sequence)), emitters_(std::move(emitters)),
+      sameView_(!sequence_.moves() && emitters_->scene().viewRepeats(base)), renderers_(1 + methods.size())
 {
-    if (cameraAt_) emitters_->setCamera(cameraAt_(0));
+    sequence_.bring(*emitters_, 0);
     emitters_->renderFrame();
     emission_ = emitters_->read(LAST_FRAME);
 
@@ -66,7 +66,7 @@ bool Correlator::step()
             settings = lawSettings(settings);
             settings.seed ^= LAW_SEED;
             renderer.apply(settings);
-            if (cameraAt_) renderer.setCamera(cameraAt_(0));
+            sequence_.bring(renderer, 0);
             meter_.emplace(renderer, emission_);
         }
         meter_->step();
@@ -77,7 +77,7 @@ bool Correlator::step()
     if (!chain_) {
         if (batch_.law) batch_.nonFinite = sumOf(renderer.stats().nonFinite);
         renderer.apply(settings);
-        chain_.emplace(renderer, cameraAt_);
+        chain_.emplace(renderer, sequence_);
     }
     chain_->step();
     if (chain_->points().size() == batch_.points.size()) return false;

@@ -22,10 +22,9 @@ class Correlator
         uint32_t lawFrames = 0, chainFrames = 0;
     };
 
-    // `emitters`, a renderer of emissionSettings(base), lends scene and camera; the camera moves when `cameraAt` is
-    // given.
+    // `emitters`, a renderer of emissionSettings(base), lends scene and camera; `sequence` says what moves.
     Correlator(std::unique_ptr<Renderer> emitters, const Settings& base, const std::vector<NamedMethod>& methods,
-               CameraAt cameraAt = {});
+               Sequence sequence = {});
 
     const std::vector<Subject>& subjects() const { return subjects_; } // the path tracer, then the methods
     bool sameView() const { return sameView_; }                        // as lawHolds() asks
@@ -37,7 +36,7 @@ class Correlator
     CorrelationBatch batch(); // as far as it is measured
 
   private:
-    CameraAt cameraAt_;
+    Sequence sequence_;
     std::unique_ptr<Renderer> emitters_;
     image::Image emission_;
     bool sameView_;

@@ -29,18 +29,20 @@ bool isCheckpoint(uint64_t frames, bool moving)
     return std::has_single_bit(frames) || (!moving && frames % 3 == 0 && std::has_single_bit(frames / 3));
 }
 
-Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, CameraAt cameraAt,
+Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, Sequence sequence,
            const Limits& limits, const std::function<void(double)>& bvhProgress)
-    : cameraAt_(std::move(cameraAt)), limits_(limits)
+    : sequence_(std::move(sequence)), limits_(limits)
 {
     CHECK(!methods.empty());
-    CHECK(!cameraAt_ || limits_.frames > 0); // each measured frame of a moving camera has a reference of its own
+    CHECK(!sequence_.moves() || limits_.frames > 0); // each measured frame has a reference of its own, then
     for (const Settings& settings : methods)
-        runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings, bvhProgress)
+        runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings, bvhProgress,
+                                                                          scene::FeatureSet::Needed, 1, nullptr,
+                                                                          sequence_.sceneMoves())
                                              : std::make_unique<Renderer>(renderer(), settings)});
     for (Runner& runner : runners_) {
         for (const uint64_t frame : WARM_UP) {
-            if (cameraAt_) runner.renderer->setCamera(cameraAt_(frame));
+            sequence_.bring(*runner.renderer, int64_t(frame));
             runner.renderer->renderFrame();
         }
     }
@@ -52,8 +54,8 @@ void Race::prepare(uint64_t seed)
         Settings settings = runner.renderer->settings();
         settings.seed = seed;
         runner.renderer->apply(settings);
-        if (cameraAt_) runner.renderer->setCamera(cameraAt_(0));
-        runner.renderer->reset(); // after the camera: it must not seem to have jumped there
+        sequence_.bring(*runner.renderer, 0);
+        runner.renderer->reset(); // afterwards: nothing must seem to have jumped there
         runner.wallSeconds = 0;
         runner.done = false;
     }
@@ -78,7 +80,7 @@ Repeat Race::run(uint64_t seed, References& references, const std::function<void
         }
     }
     for (Runner& runner : runners_) {
-        repeat.finals.push_back(runner.renderer->read(cameraAt_ ? LAST_FRAME : MEAN));
+        repeat.finals.push_back(runner.renderer->read(sequence_.moves() ? LAST_FRAME : MEAN));
         repeat.nonFinite += sumOf(runner.renderer->stats().nonFinite);
     }
     repeat.complete = true;
@@ -99,9 +101,9 @@ bool Race::slice(Runner& runner)
     const auto atEnd = [&] { return limits_.frames > 0 && renderer.frameCount() >= limits_.frames; };
     bool checkpoint = false;
     do {
-        if (cameraAt_) renderer.setCamera(cameraAt_(renderer.frameCount()));
+        sequence_.bring(renderer, int64_t(renderer.frameCount()));
         renderer.renderFrame();
-        checkpoint = isCheckpoint(renderer.frameCount(), cameraAt_ != nullptr);
+        checkpoint = isCheckpoint(renderer.frameCount(), sequence_.moves());
     } while (!checkpoint && !atEnd() && secondsSince(start) < limits_.sliceSeconds);
     renderer.wait();
     runner.wallSeconds += secondsSince(start);
@@ -126,7 +128,7 @@ bool Race::measure(uint32_t method, References& references, Repeat& repeat)
         sample.error = image::without(reference->error, image::measure(reference->picture, picture));
         repeat.samples.push_back(sample);
     };
-    if (!cameraAt_) add(true, renderer.read(MEAN));
+    if (!sequence_.moves()) add(true, renderer.read(MEAN));
     add(false, renderer.read(LAST_FRAME));
     return true;
 }

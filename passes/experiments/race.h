@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "engine/image/metrics.h"
-#include "passes/camera_path.h"
 #include "passes/experiments/reference.h"
 #include "passes/renderer.h"
+#include "passes/sequence.h"
 
 namespace passes
 {
@@ -25,25 +25,25 @@ struct Sample {
 
 struct Repeat {
     std::vector<Sample> samples;      // by time
-    std::vector<image::Image> finals; // each method's last picture: the mean, or with a moving camera the last frame
+    std::vector<image::Image> finals; // each method's last picture: the mean, or where something moves the last frame
     uint64_t nonFinite = 0;           // values counted in all stages of all methods
     bool complete = false;            // false: stopped before its end
 };
 
-// When to measure: after 1, 2, 3, 4, 6, 8, 12, 16... frames, or with a moving camera, where each needs a reference of
-// its own, after 1, 2, 4, 8...
+// When to measure: after 1, 2, 3, 4, 6, 8, 12, 16... frames, or where something moves, so that each needs a reference
+// of its own, after 1, 2, 4, 8...
 bool isCheckpoint(uint64_t frames, bool moving);
 
 class Race
 {
   public:
     struct Limits {
-        uint64_t frames = 0;       // of each method; 0: by time, for resting cameras only
+        uint64_t frames = 0;       // of each method; 0: by time, where nothing moves
         double seconds = 0;        // of each method, wall
         double sliceSeconds = 0.1; // one turn
     };
     // One renderer for each method, all with one scene. Frames before the clock starts let the driver compile.
-    Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, CameraAt cameraAt,
+    Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Settings>& methods, Sequence sequence,
          const Limits& limits, const std::function<void(double)>& bvhProgress = {});
 
     const Renderer& renderer() const { return *runners_.front().renderer; }
@@ -64,7 +64,7 @@ class Race
     bool measure(uint32_t method, References& references, Repeat& repeat);
     double doneOf(const Runner& runner) const;
 
-    CameraAt cameraAt_;
+    Sequence sequence_;
     Limits limits_;
     std::vector<Runner> runners_;
 };

@@ -108,8 +108,8 @@ void ReferenceTracer::begin()
     renderer_->reset();
 }
 
-References::References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options)
-    : settings_(referenceSettings(settings)), cameraAt_(std::move(cameraAt)), options_(std::move(options)),
+References::References(const Renderer& sharing, const Settings& settings, Sequence sequence, Options options)
+    : settings_(referenceSettings(settings)), sequence_(std::move(sequence)), options_(std::move(options)),
       tracer_(std::make_unique<Renderer>(sharing, settings_))
 {
 }
@@ -129,10 +129,10 @@ References::References(const std::filesystem::path& file, const Settings& settin
 
 const Reference* References::after(uint64_t frames)
 {
-    const uint64_t index = cameraAt_ ? frames : 0;
+    const uint64_t index = sequence_.moves() ? frames : 0;
     if (const auto found = made_.find(index); found != made_.end()) return &found->second;
     Renderer& renderer = tracer_->renderer();
-    if (cameraAt_) renderer.setCamera(cameraAt_(frames - 1));
+    sequence_.bring(renderer, sequence_.moves() ? int64_t(frames) - 1 : 0);
     renderer.apply(settings_); // with the seed that no batch has
     renderer.reset();
     renderer.renderFrame();

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "engine/image/mean_picture.h"
-#include "passes/camera_path.h"
 #include "passes/renderer.h"
+#include "passes/sequence.h"
 
 namespace passes
 {
@@ -51,8 +51,9 @@ class ReferenceTracer
     image::MeanPicture mean_;
 };
 
-// References of one scene, one per camera, made when first asked for. What was made is found again in the cache by the
-// settings, the precision and the pixels of one frame: those change with the scene, the device and the program.
+// References of one scene, one for each frame of a sequence, made when first asked for. What was made is found again in
+// the cache by the settings, the precision and the pixels of one frame: those change with the scene, the device and the
+// program.
 class References
 {
   public:
@@ -62,22 +63,22 @@ class References
         std::function<void(double fraction)> progress = [](double) {};
         std::function<bool()> stop = [] { return false; };
     };
-    // Of the scene of `sharing`, path traced. The camera moves when `cameraAt` is given.
-    References(const Renderer& sharing, const Settings& settings, CameraAt cameraAt, Options options);
-    // A picture from a file, for a resting camera. Throws Error: unreadable, of another size, not finite.
+    // Of the scene of `sharing`, path traced.
+    References(const Renderer& sharing, const Settings& settings, Sequence sequence, Options options);
+    // A picture from a file, where nothing moves. Throws Error: unreadable, of another size, not finite.
     References(const std::filesystem::path& file, const Settings& settings);
 
     // For the picture after so many frames. Null when stopped before it was made. Throws Error: the cache cannot be
     // written.
     const Reference* after(uint64_t frames);
-    const std::map<uint64_t, Reference>& made() const { return made_; }    // by frame; 0 for a resting camera
+    const std::map<uint64_t, Reference>& made() const { return made_; }    // by frame; 0 where nothing moves
     const std::vector<std::string>& warnings() const { return warnings_; } // about the file, for the person
 
   private:
-    std::optional<Reference> trace(); // of the renderer's camera; nothing when stopped
+    std::optional<Reference> trace(); // of what the renderer sees; nothing when stopped
 
     Settings settings_;
-    CameraAt cameraAt_;
+    Sequence sequence_;
     Options options_;
     std::optional<ReferenceTracer> tracer_; // empty: all are made
     std::map<uint64_t, Reference> made_;

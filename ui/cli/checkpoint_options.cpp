@@ -75,7 +75,8 @@ void CheckpointOptions::name(NamedFiles& files) const
     if (checkpoint_.empty() || !files::areSame(resume_, checkpoint_)) files.reads("--resume", resume_);
 }
 
-double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& report)
+double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& report,
+                                const std::function<void(uint64_t frame)>& bring)
 {
     identity_ = identityOf(renderer, report);
     kept_ = std::chrono::steady_clock::now();
@@ -86,6 +87,7 @@ double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& rep
     if (report.settings.seconds == 0 && frames > report.settings.frames)
         throw Error("Cannot resume from \"{}\": it has {} frames already, more than the {} of --frames.", resume_,
                     frames, report.settings.frames);
+    if (frames > 0) bring(frames - 1); // what its history is of
     renderer.restore(checkpoint.state);
     return checkpoint.seconds;
 }

@@ -2,6 +2,8 @@
 // --checkpoint, --checkpoint-interval and --resume: long renders that survive whatever ends them.
 
 #include <chrono>
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -21,9 +23,10 @@ class CheckpointOptions
     void name(NamedFiles& files) const;
     bool resumes() const { return !resume_.empty(); }
 
-    // Before the first frame: goes on from --resume's file, if given, and returns the seconds rendered before. Throws
-    // Error: no such file, damaged, or of another render.
-    double start(passes::Renderer& renderer, const RunReport& report);
+    // Before the first frame: goes on from --resume's file, if given, and returns the seconds rendered before. `bring`
+    // takes the renderer to what a frame, counted from 0, shows. Throws Error: no such file, damaged, or of another
+    // render.
+    double start(passes::Renderer& renderer, const RunReport& report, const std::function<void(uint64_t frame)>& bring);
 
     // After a frame: writes --checkpoint's file, if given, at most once an interval. That it cannot be written is a
     // warning, for the render itself is well.

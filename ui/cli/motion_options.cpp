@@ -1,6 +1,6 @@
 #include "ui/cli/motion_options.h"
 
-#include "passes/camera_path.h"
+#include "engine/scene/motion.h"
 #include "ui/cli/number_range.h"
 #include "ui/cli/usage_error.h"
 
@@ -26,31 +26,69 @@ void MotionOptions::addTo(CLI::App& app)
         ->check(within(-180.0, 180.0))
         ->excludes(path)
         ->group("Camera motion");
+    CLI::Option* fps =
+        app.add_option("--fps", fps_,
+                       "Plays the scene's animations (those of --animation): frame 0 shows it at --time, each later "
+                       "one 1/FPS seconds of "
+                       "it further. Writes the last frame: --average is off. 0: the scene is held still.");
+    fps->option_text("0 to 1000 (0)")->check(within(0.0, 1000.0))->group("Animation");
+    app.add_option("--speed", speed_, "How fast it plays; negative: backwards.")
+        ->option_text("-100 to 100 (1)")
+        ->check(within(-100.0, 100.0))
+        ->needs(fps)
+        ->group("Animation");
+    app.add_option("--loop", loop_, "Whether it begins again after the last key; off: it stays as it is there.")
+        ->option_text("on|off (on)")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->needs(fps)
+        ->group("Animation");
 }
 
-void MotionOptions::adjust(passes::Settings& settings, const SettingsOptions& options) const
+void MotionOptions::adjust(passes::Settings& settings, const SettingsOptions& options, SceneSource& source) const
 {
+    if (fps_ > 0 && source.animation == "off")
+        throw UsageError("--fps plays animations, and --animation off leaves none: leave out one of the two.");
+    if (fps_ > 0 && !source.time) source.time = 0;
     if (!moving()) return;
-    if (options.given("average") && settings.average && !path_.empty() && passes::standsStill(path_)) return;
+    const bool onlyPath = !path_.empty() && fps_ == 0;
+    if (options.given("average") && settings.average && onlyPath && passes::standsStill(path_)) return;
     if (settings.average && options.given("average"))
         throw UsageError(
-            "--average on cannot be combined with {}: the mean of frames seen from different places is no picture.",
-            path_.empty() ? "--orbit" : "--camera-path");
+            "--average on cannot be combined with {}: the mean of frames that show different things is no picture.",
+            fps_ > 0        ? "--fps"
+            : path_.empty() ? "--orbit"
+                            : "--camera-path");
     settings.average = false;
 }
 
-passes::CameraAt MotionOptions::read(const scene::Scene& scene, const passes::Settings& settings) const
+passes::Sequence MotionOptions::read(scene::Scene& scene, const passes::Settings& settings,
+                                     const SceneSource& source) const
 {
-    if (!moving()) return {};
-    const scene::Camera& base = scene.cameras[passes::chooseCamera(scene, settings.camera)];
-    return path_.empty() ? passes::cameraOrbit(base, orbit_) : passes::loadCameraPath(path_, base, scene.origin);
+    const uint32_t camera = passes::chooseCamera(scene, settings.camera);
+    passes::CameraAt cameraAt;
+    if (!path_.empty())
+        cameraAt = passes::loadCameraPath(path_, scene.cameras[camera], scene.origin);
+    else if (orbit_ != 0)
+        cameraAt = passes::cameraOrbit(scene.cameras[camera], orbit_);
+    const std::vector<uint32_t> chosen = fps_ > 0 ? chosenAnimations(scene, source) : std::vector<uint32_t>();
+    if (chosen.empty()) return cameraAt;
+    return {scene,
+            {.animations = chosen, .start = source.time.value_or(0), .step = speed_ / fps_, .loop = loop_ == "on"},
+            camera,
+            cameraAt};
 }
 
 std::vector<std::pair<std::string, std::string>> MotionOptions::toText() const
 {
-    if (!moving()) return {};
-    if (path_.empty()) return {{"orbit", fmt::format("{}", orbit_)}};
-    return {{"camera-path", path_}};
+    std::vector<std::pair<std::string, std::string>> text;
+    if (!path_.empty()) text.emplace_back("camera-path", path_);
+    if (orbit_ != 0) text.emplace_back("orbit", fmt::format("{}", orbit_));
+    if (fps_ > 0) {
+        text.emplace_back("fps", fmt::format("{}", fps_));
+        text.emplace_back("speed", fmt::format("{}", speed_));
+        text.emplace_back("loop", loop_);
+    }
+    return text;
 }
 
 } // namespace ui

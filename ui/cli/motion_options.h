@@ -1,5 +1,6 @@
 #pragma once
-// --camera-path and --orbit: a camera that moves without a window.
+// What moves from frame to frame without a window: --camera-path and --orbit move the camera, --fps plays the scene's
+// animations.
 
 #include <string>
 #include <utility>
@@ -7,9 +8,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "passes/camera_path.h"
+#include "passes/sequence.h"
 #include "passes/settings.h"
 #include "ui/cli/output_file.h"
+#include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
 
 namespace ui
@@ -20,14 +22,16 @@ class MotionOptions
   public:
     void addTo(CLI::App& app); // must live until the options are read
 
-    bool moving() const { return !path_.empty() || orbit_ != 0; }
+    bool moving() const { return !path_.empty() || orbit_ != 0 || fps_ > 0; }
 
-    // A mean over frames seen from different places is no picture: with a moving camera --average is off unless the
-    // command line asks for it, which is a UsageError unless the path is one keyframe: then nothing moves.
-    void adjust(passes::Settings& settings, const SettingsOptions& options) const;
+    // A mean over frames that show different things is no picture: where something moves --average is off unless the
+    // command line asks for it, which is a UsageError unless it is only a camera path of one keyframe: then nothing
+    // moves. A scene that plays begins at 0 s if --time does not say otherwise.
+    void adjust(passes::Settings& settings, const SettingsOptions& options, SceneSource& source) const;
 
-    // Of the camera that the settings choose. Empty when nothing moves. Throws Error: the file.
-    passes::CameraAt read(const scene::Scene& scene, const passes::Settings& settings) const;
+    // Of the camera that the settings choose; `scene` is that of `source` and is posed in place by what is returned.
+    // Throws Error: the file.
+    passes::Sequence read(scene::Scene& scene, const passes::Settings& settings, const SceneSource& source) const;
 
     void name(NamedFiles& files) const { files.reads("--camera-path", path_); }
 
@@ -37,6 +41,9 @@ class MotionOptions
   private:
     std::string path_;
     double orbit_ = 0; // degrees per frame
+    double fps_ = 0;   // frames a second; 0: the scene does not play
+    double speed_ = 1;
+    std::string loop_ = "on";
 };
 
 } // namespace ui

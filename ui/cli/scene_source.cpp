@@ -46,8 +46,7 @@ void animate(scene::Scene& scene, const SceneSource& source)
                             count, count == 1 ? "" : "s"));
         return;
     }
-    const std::vector<uint32_t> chosen =
-        scene::chooseAnimations(scene, source.animation.empty() ? "all" : source.animation);
+    const std::vector<uint32_t> chosen = chosenAnimations(scene, source);
     if (chosen.empty() && source.animation != "off")
         scene.warnings.push_back("The scene has no animation: it is the same at every --time.");
     if (chosen.empty()) return;
@@ -58,6 +57,11 @@ void animate(scene::Scene& scene, const SceneSource& source)
 }
 
 } // namespace
+
+std::vector<uint32_t> chosenAnimations(const scene::Scene& scene, const SceneSource& source)
+{
+    return scene::chooseAnimations(scene, source.animation.empty() ? "all" : source.animation);
+}
 
 std::vector<std::pair<std::string, std::string>> SceneSource::toText() const
 {
@@ -74,10 +78,11 @@ CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::stri
            "The scene's buffers and textures may lie anywhere below this directory, as in \"../textures/x.png\"; "
            "without it, only below the scene's own folder. Others are refused, and links that lead to others.")
         ->option_text("DIR");
-    app.add_option(
-           "--time", source.time,
-           "Shows an animated scene as it is at this time, held still; before the first key and after the last "
-           "it rests there. Without it, and without --animation, the scene is in the pose that its nodes state.")
+    app.add_option("--time", source.time,
+                   "Shows an animated scene as it is at this time, held still (or as it plays on from there: --fps); "
+                   "before the first "
+                   "key and after the last it rests there. Without it, and without --animation, the scene is in the "
+                   "pose that its nodes state.")
         ->option_text("0 to 1e6 s (at rest)")
         ->check(within(0.0, 1e6))
         ->group("Animation");

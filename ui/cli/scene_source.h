@@ -28,6 +28,9 @@ struct SceneSource {
     bool operator==(const SceneSource&) const = default;
 };
 
+// Indices; none: there is none, or "off". Throws Error.
+std::vector<uint32_t> chosenAnimations(const scene::Scene& scene, const SceneSource& source);
+
 constexpr const char* SCENE_DOC = "A .gltf or .glb file, or a built-in scene (info --scenes lists them).";
 
 // SCENE, --asset-root, --time and --animation; `source` must live until the options are read. The option that is

@@ -44,7 +44,7 @@ struct ConvergeCommand {
     MotionOptions motion;
     SettingsOptions settings;
 
-    int run() const;
+    int run();
 
     passes::Race::Limits limitsOf(const passes::Settings& wanted) const;
     std::string keyOf(const ConvergeReport& report, const passes::Race::Limits& limits) const;
@@ -124,16 +124,17 @@ void ConvergeCommand::write(ConvergeReport& report, const passes::RaceStore& sto
     writeText(folder / "index.html", convergePage(report, plots));
 }
 
-int ConvergeCommand::run() const
+int ConvergeCommand::run()
 {
     passes::Settings wanted = settings.read();
-    motion.adjust(wanted, settings);
+    motion.adjust(wanted, settings, scene);
     ConvergeReport report{.scene = scene.name, .methods = readMethods(methods, wanted), .moving = motion.moving()};
     report.pt = ensurePathTracer(report.methods, wanted);
     report.precision = precision.error;
     const passes::Race::Limits limits = limitsOf(wanted);
     if (reference != "auto") {
-        if (report.moving) throw UsageError("--reference FILE cannot be combined with a moving camera: use auto.");
+        if (report.moving)
+            throw UsageError("--reference FILE cannot be combined with a moving camera or scene: use auto.");
         report.referenceFile = reference;
     }
     NamedFiles named;
@@ -148,8 +149,8 @@ int ConvergeCommand::run() const
 
     Progress progress(quiet);
     gpu::Device gpu = device.open();
-    const scene::Scene world = openScene(scene, wanted, progress);
-    const passes::CameraAt cameraAt = motion.read(world, wanted);
+    scene::Scene world = openScene(scene, wanted, progress);
+    const passes::Sequence sequence = motion.read(world, wanted, scene);
     report.provenance = {.command = commandLine(),
                          .scene = scene.name,
                          .device = gpu.adapter().name,
@@ -166,13 +167,13 @@ int ConvergeCommand::run() const
     else
         store.requireNew();
 
-    passes::Race race(gpu, world, each(report.methods, &passes::NamedMethod::settings), cameraAt, limits,
+    passes::Race race(gpu, world, each(report.methods, &passes::NamedMethod::settings), sequence, limits,
                       [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
     const Interrupt interrupt;
     const auto stop = [&] { return interrupt.requested(); };
     passes::References references =
         report.referenceFile.empty()
-            ? passes::References(race.renderer(), wanted, cameraAt,
+            ? passes::References(race.renderer(), wanted, sequence,
                                  {.precision = precision,
                                   .cache = cacheDirectory().empty() ? "" : cacheDirectory() + "/references",
                                   .progress = [&](double done) { progress.show("Path tracing a reference", done, 1); },

@@ -54,13 +54,13 @@ struct CorrelateCommand {
     MotionOptions motion;
     SettingsOptions settings{protocol()};
 
-    passes::Settings readSettings() const;
+    passes::Settings readSettings();
     std::vector<passes::NamedMethod> readMethods(const passes::Settings& base) const;
     std::vector<uint32_t> shareOut(const gpu::Device& gpu, const std::vector<passes::NamedMethod>& list) const;
-    int run() const;
+    int run();
 };
 
-passes::Settings CorrelateCommand::readSettings() const
+passes::Settings CorrelateCommand::readSettings()
 {
     if (settings.given("method")) throw UsageError("correlate takes --methods, a list, instead of --method.");
     passes::Settings base = settings.read();
@@ -106,7 +106,7 @@ std::vector<uint32_t> CorrelateCommand::shareOut(const gpu::Device& gpu,
     return sizes;
 }
 
-int CorrelateCommand::run() const
+int CorrelateCommand::run()
 {
     const passes::Settings base = readSettings();
     const std::vector<passes::NamedMethod> list = readMethods(base);
@@ -129,8 +129,8 @@ int CorrelateCommand::run() const
     for (const auto& fact : motion.toText()) facts.push_back(fact);
     for (const passes::NamedMethod& method : list)
         facts.emplace_back("method " + method.name, passes::hash(method.settings));
-    const scene::Scene world = openScene(scene, base, progress);
-    const passes::CameraAt cameraAt = motion.read(world, base);
+    scene::Scene world = openScene(scene, base, progress);
+    const passes::Sequence sequence = motion.read(world, base, scene);
 
     const passes::CorrelationStore store(output);
     if (processes.index() == 0) store.open(facts, resume);
@@ -140,10 +140,11 @@ int CorrelateCommand::run() const
     facts.emplace_back("batches", std::to_string(sizes.size()));
     std::vector<passes::CorrelationBatch> batches = store.load(sizes);
 
-    passes::Correlator correlator(
-        std::make_unique<passes::Renderer>(gpu, world, passes::emissionSettings(base),
-                                           [&](double fraction) { progress.show("Building the BVH", fraction, 1); }),
-        base, list, cameraAt);
+    passes::Correlator correlator(std::make_unique<passes::Renderer>(
+                                      gpu, world, passes::emissionSettings(base),
+                                      [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
+                                      scene::FeatureSet::Needed, 1, nullptr, sequence.sceneMoves()),
+                                  base, list, sequence);
     progress.clear();
 
     // What this process has to do: items in the order of batches, dealt out in turns.
@@ -183,7 +184,7 @@ int CorrelateCommand::run() const
     std::vector<Bytes> records;
     for (const passes::CorrelationBatch& batch_ : batches) records.push_back(toBytes(batch_));
     passes::Correlation correlation{.scene = scene.name,
-                                    .moving = bool(cameraAt),
+                                    .moving = sequence.moves(),
                                     .sameView = correlator.sameView(),
                                     .partial = interrupt.requested(),
                                     .width = base.width,

@@ -12,6 +12,7 @@
 #include "ui/cli/progress.h"
 #include "ui/cli/run_report.h"
 #include "ui/cli/scene_source.h"
+#include "ui/cli/sequence_output.h"
 #include "ui/cli/settings_options.h"
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
@@ -35,32 +36,39 @@ struct RenderCommand {
     bool quiet = false;
     DeviceOptions device;
     MotionOptions motion;
+    SequenceOutput frames;
     CheckpointOptions checkpoint;
     SettingsOptions settings;
 
     int run();
+    void renderFrames(passes::Renderer& renderer, const passes::Sequence& sequence, Progress& progress,
+                      RunReport& report, Clock::time_point commandStart);
+    void writePicture(const std::filesystem::path& file, passes::Renderer& renderer, RunReport& report) const;
 };
 
 // Until the settings say stop, or Ctrl-C or SIGTERM does.
-void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, CheckpointOptions& checkpoint,
-                  Progress& progress, RunReport& report, Clock::time_point commandStart)
+void RenderCommand::renderFrames(passes::Renderer& renderer, const passes::Sequence& sequence, Progress& progress,
+                                 RunReport& report, Clock::time_point commandStart)
 {
     const passes::Settings& wanted = report.settings;
     const bool byTime = wanted.seconds > 0;
     const Interrupt interrupt;
-    const double before = checkpoint.start(renderer, report);
+    const auto bring = [&](uint64_t rendered) { sequence.bring(renderer, frames.numberOf(rendered)); };
+    const double before = checkpoint.start(renderer, report, bring);
     const auto start = Clock::now();
     double elapsed = before;
     report.frames = renderer.frameCount();
     const auto finished = [&] { return byTime ? elapsed >= wanted.seconds : report.frames >= wanted.frames; };
     while (report.frames == 0 || !(finished() || interrupt.requested())) {
-        if (cameraAt) renderer.setCamera(cameraAt(report.frames));
+        bring(report.frames);
         renderer.renderFrame();
         report.frames = renderer.frameCount();
         if (report.firstPixelSeconds == 0) {
             renderer.wait();
             report.firstPixelSeconds = secondsSince(commandStart);
         }
+        const std::filesystem::path file = frames.fileOf(report.frames - 1);
+        if (!file.empty()) writePicture(file, renderer, report);
         elapsed = before + secondsSince(start);
         checkpoint.keep(renderer, elapsed);
         if (byTime)
@@ -74,42 +82,8 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
     progress.clear();
 }
 
-int RenderCommand::run()
+void RenderCommand::writePicture(const std::filesystem::path& file, passes::Renderer& renderer, RunReport& report) const
 {
-    const auto commandStart = Clock::now();
-    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = scene.toText()};
-    for (auto& fact : motion.toText()) report.extra.push_back(std::move(fact));
-    motion.adjust(report.settings, settings);
-    NamedFiles named;
-    named.writes("--output", output);
-    named.writes("--stats", stats);
-    checkpoint.name(named);
-    motion.name(named);
-    settings.name(named, report.settings);
-    named.reads("SCENE", scene.name);
-    requireWritable(output, {".exr", ".png"});
-    if (!layers.empty() && files::extensionOf(output) != ".exr")
-        throw UsageError("--layers needs an EXR: \"{}\" holds one picture only.", output);
-    const bool mean = std::ranges::find(layers, passes::MEAN.name) != layers.end();
-    if (mean && motion.moving() && !report.settings.average)
-        throw UsageError("--layers mean cannot be combined with a moving camera: the mean of frames seen from "
-                         "different places is no picture.");
-    if (!stats.empty()) requireWritable(stats);
-    checkpoint.requireWritable();
-
-    Progress progress(quiet);
-    const auto loadStart = Clock::now();
-    gpu::Device gpu = device.open(checkpoint.resumes());
-    const scene::Scene world = openScene(scene, report.settings, progress);
-    for (const std::filesystem::path& file : world.files) named.reads("SCENE", file);
-    const passes::CameraAt cameraAt = motion.read(world, report.settings);
-    report.adapter = gpu.adapter();
-    report.loadSeconds = secondsSince(loadStart);
-    passes::Renderer renderer(gpu, world, report.settings,
-                              [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
-
-    renderFrames(renderer, cameraAt, checkpoint, progress, report, commandStart);
-    const bool kept = checkpoint.finish(renderer, report.wallSeconds);
     const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
     report.stats = renderer.stats();
     report.meanRgb = meanOf(picture);
@@ -117,7 +91,49 @@ int RenderCommand::run()
     for (const passes::Output* one : passes::OUTPUTS)
         if (std::ranges::find(layers, one->name) != layers.end())
             more.push_back({one->name, one->channels, renderer.read(*one)});
-    image::write(output, picture, metadataOf(report), more);
+    image::write(file, picture, metadataOf(report), more);
+}
+
+int RenderCommand::run()
+{
+    const auto commandStart = Clock::now();
+    RunReport report{.scene = scene.name, .settings = settings.read()};
+    motion.adjust(report.settings, settings, scene);
+    frames.adjust(report.settings, settings, output);
+    for (const auto& facts : {scene.toText(), motion.toText(), frames.toText()})
+        report.extra.insert(report.extra.end(), facts.begin(), facts.end());
+    NamedFiles named;
+    named.writes("--output", frames.given() ? frames.fileOf(report.settings.frames - 1).string() : output);
+    named.writes("--stats", stats);
+    checkpoint.name(named);
+    motion.name(named);
+    settings.name(named, report.settings);
+    named.reads("SCENE", scene.name);
+    requireWritable(frames.given() ? frames.fileOf(report.settings.frames - 1).string() : output, {".exr", ".png"});
+    if (!layers.empty() && files::extensionOf(output) != ".exr")
+        throw UsageError("--layers needs an EXR: \"{}\" holds one picture only.", output);
+    const bool mean = std::ranges::find(layers, passes::MEAN.name) != layers.end();
+    if (mean && motion.moving() && !report.settings.average)
+        throw UsageError("--layers mean cannot be combined with a moving camera or scene: the mean of frames that show "
+                         "different things is no picture.");
+    if (!stats.empty()) requireWritable(stats);
+    checkpoint.requireWritable();
+
+    Progress progress(quiet);
+    const auto loadStart = Clock::now();
+    gpu::Device gpu = device.open(checkpoint.resumes());
+    scene::Scene world = openScene(scene, report.settings, progress);
+    for (const std::filesystem::path& file : world.files) named.reads("SCENE", file);
+    const passes::Sequence sequence = motion.read(world, report.settings, scene);
+    report.adapter = gpu.adapter();
+    report.loadSeconds = secondsSince(loadStart);
+    passes::Renderer renderer(
+        gpu, world, report.settings, [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
+        scene::FeatureSet::Needed, 1, nullptr, sequence.sceneMoves());
+
+    renderFrames(renderer, sequence, progress, report, commandStart);
+    const bool kept = checkpoint.finish(renderer, report.wallSeconds);
+    if (!frames.given()) writePicture(output, renderer, report);
     if (!stats.empty()) writeText(stats, jsonText(toJson(report), 2) + "\n");
 
     for (const auto& [stage, count] : report.stats.nonFinite)
@@ -125,7 +141,11 @@ int RenderCommand::run()
             fmt::print(stderr, "Warning: stage {} found {} values that are not finite and counted them as 0.\n", stage,
                        count);
     if (!report.partial) return kept ? 0 : 1;
-    fmt::print(stderr, "Interrupted: {} is partial, marked so, with {} frames.\n", output, report.frames);
+    if (frames.given())
+        fmt::print(stderr, "Interrupted after {} of {} frames; those that are written are whole.\n", report.frames,
+                   report.settings.frames);
+    else
+        fmt::print(stderr, "Interrupted: {} is partial, marked so, with {} frames.\n", output, report.frames);
     return Interrupt::exitCode();
 }
 
@@ -159,6 +179,7 @@ Action setUpRender(CLI::App& app)
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);
     command->motion.addTo(app);
+    command->frames.addTo(app);
     command->checkpoint.addTo(app);
     command->settings.addTo(app);
     return [command] { return command->run(); };
