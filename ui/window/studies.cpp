@@ -20,7 +20,7 @@ bool sameSubject(const StudyKind& kind, Side side, const Order& a, const Order& 
     const auto settings = [&](const Order& order) {
         return kind.ofPicture ? passes::referenceSettings(settingsOf(order, side)) : settingsOf(order, side);
     };
-    return a.pose == b.pose && sourceOf(a) == sourceOf(b) && a.restarts == b.restarts &&
+    return a.pose == b.pose && a.scene == b.scene && a.restarts == b.restarts &&
            orderedOf(kind, side, a) == orderedOf(kind, side, b) && settings(a) == settings(b);
 }
 

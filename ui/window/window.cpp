@@ -106,9 +106,7 @@ class Window
         } else if (kind == ".exr" || kind == ".png" || kind == ".hdr" || kind == ".jpg" || kind == ".jpeg") {
             loadReference(file);
         } else {
-            state_.order.scene = file;
-            state_.order.time.reset();
-            state_.order.animation.clear();
+            state_.order.scene = {.name = file, .assetRoot = state_.order.scene.assetRoot}; // at rest
             state_.order.pose.reset();
             state_.order.settings.camera.clear();
         }

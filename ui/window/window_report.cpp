@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json reportOf(const Shot& shot)
 {
-    return {{"scene", shot.order.scene},
+    return {{"scene", shot.order.scene.name},
             {"settings", passes::toJson(shot.order.settings)},
             {"frames", shot.frames},
             {"seconds", shot.seconds},
