@@ -4,8 +4,11 @@
 #include "passes/camera_path.h"
 #include "ui/cli/scene_source.h"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <unistd.h>
+#include <utility>
 
 namespace ui
 {
