@@ -78,7 +78,7 @@ void CheckpointOptions::name(NamedFiles& files) const
 double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& report)
 {
     identity_ = identityOf(renderer, report);
-    kept_ = std::chrono::steady_clock::now();
+    kept_ = Clock::now();
     if (resume_.empty()) return 0;
     const passes::Checkpoint checkpoint = passes::readCheckpoint(resume_);
     passes::requireSame(checkpoint, identity_, resume_);
@@ -92,9 +92,8 @@ double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& rep
 
 void CheckpointOptions::keep(passes::Renderer& renderer, double seconds)
 {
-    const auto now = std::chrono::steady_clock::now();
-    if (checkpoint_.empty() || now - kept_ < std::chrono::duration<double>(interval_)) return;
-    kept_ = now;
+    if (checkpoint_.empty() || secondsSince(kept_) < interval_) return;
+    kept_ = Clock::now();
     write(renderer, seconds, "Rendering goes on.");
 }
 
