@@ -64,7 +64,8 @@ TEST_F(AnimationOptions, ShowTheSceneAtATime)
     const size_t middle = 8 * 16 + 7;
     const std::vector<glm::vec3> rest = picture({});
     EXPECT_EQ(rest[middle], LIT);
-    EXPECT_EQ(err, "Warning: The scene has 1 animation and is shown at rest: --time SECONDS shows it in motion.\n");
+    EXPECT_EQ(err, "Warning: The scene has 1 animation and is shown at rest: --time SECONDS shows it as it is at that "
+                   "time.\n");
     EXPECT_EQ(picture({"--animation", "off"}), rest);
     EXPECT_EQ(err, "");
     for (const std::string animation : {"all", "slide", "0"}) {
