@@ -10,6 +10,7 @@
 #include "passes/camera_path.h"
 #include "passes/settings.h"
 #include "ui/cli/output_file.h"
+#include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
 
 namespace ui
@@ -38,5 +39,8 @@ class MotionOptions
     std::string path_;
     double orbit_ = 0; // degrees per frame
 };
+
+// What decides the pixels besides settings, as metadata: the scene's pose and the camera's motion.
+std::vector<std::pair<std::string, std::string>> motionText(const SceneSource& scene, const MotionOptions& camera);
 
 } // namespace ui

@@ -77,8 +77,7 @@ void renderFrames(passes::Renderer& renderer, const passes::CameraAt& cameraAt, 
 int RenderCommand::run()
 {
     const auto commandStart = Clock::now();
-    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = scene.toText()};
-    for (auto& fact : motion.toText()) report.extra.push_back(std::move(fact));
+    RunReport report{.scene = scene.name, .settings = settings.read(), .extra = motionText(scene, motion)};
     motion.adjust(report.settings, settings);
     NamedFiles named;
     named.writes("--output", output);
