@@ -5,7 +5,7 @@
 
 using Clock = std::chrono::steady_clock;
 
-inline double secondsSince(Clock::time_point start)
+inline double secondsSince(Clock::time_point start, Clock::time_point now = Clock::now())
 {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+    return std::chrono::duration<double>(now - start).count();
 }

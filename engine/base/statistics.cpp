@@ -140,10 +140,4 @@ Difference compare(const Estimate& a, const Estimate& b, double relativeRounding
     return result;
 }
 
-bool showsEquivalence(const Difference& difference, double margin, double level)
-{
-    const double reach = studentQuantile(1 - level, difference.degreesOfFreedom) * difference.standardError;
-    return std::abs(difference.difference) + reach < margin;
-}
-
 } // namespace statistics

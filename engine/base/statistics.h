@@ -64,7 +64,4 @@ struct Difference {
 };
 Difference compare(const Estimate& a, const Estimate& b, double relativeRounding = 0);
 
-// Two one-sided tests: true when |a - b| < margin is shown at the level (its negation is rejected).
-bool showsEquivalence(const Difference& difference, double margin, double level);
-
 } // namespace statistics

@@ -2,7 +2,6 @@
 // exit code is 1 when a value was not finite or a mean is off.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -10,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/clock.h"
 #include "engine/base/csv.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
@@ -275,7 +275,7 @@ try {
         rows.push_back({&extreme, {}});
         for (const auto& [name, method] : methods) {
             if (!onlyMethod.empty() && name != onlyMethod) continue;
-            const auto start = std::chrono::steady_clock::now();
+            const auto start = Clock::now();
             const Figures figures = measure(gpu, extreme, method, truth);
             rows.back().methods[name] = figures;
             allSound = allSound && sound(figures);
@@ -283,8 +283,7 @@ try {
                 "%-44s %-11s %s  not finite %llu  z %.2f  variance %.3g  largest %.3g  mean/truth %.4f  %.1f s\n",
                 extreme.name.c_str(), name.c_str(), sound(figures) ? "ok " : "BAD",
                 static_cast<unsigned long long>(figures.nonFinite), figures.z, figures.relativeVariance,
-                figures.largest, figures.meanOverTruth,
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+                figures.largest, figures.meanOverTruth, secondsSince(start));
             std::fflush(stdout);
         }
         report(folder, rows, gpu.adapter());

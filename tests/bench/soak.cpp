@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/fingerprint.h"
 #include "engine/base/memory.h"
@@ -114,10 +114,8 @@ int soak(double minutes, const std::string& deviceName)
     fmt::print("On {}, for {} minutes\n", device.adapter().name, minutes);
     fmt::print("turn minutes   frames  resident-MiB  heap-MiB  files threads buffers pages layouts parked unfinite "
                "device-MiB\n");
-    const auto start = std::chrono::steady_clock::now();
-    const auto minutesPast = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 60;
-    };
+    const auto start = Clock::now();
+    const auto minutesPast = [&] { return secondsSince(start) / 60; };
     constexpr size_t WARM = 3; // turns until caches are full
     std::vector<Usage> turns;
     std::vector<uint64_t> pictures;

@@ -2,7 +2,6 @@
 // run, medians. LOG.md says what was tried and what it gave.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -16,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/gpu/gpu.h"
@@ -63,9 +63,9 @@ void repeat(scene::Scene& scene, uint32_t copies)
 
 double secondsOf(const std::function<void()>& work)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return secondsSince(start);
 }
 
 rusage resources()

@@ -1,7 +1,6 @@
 // Random scenes and settings against truth, for as long as somebody likes: ./run hunt MINUTES. What is found is made
 // small and written as files with the command lines that show it.
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "tests/hunt/case_file.h"
 #include "tests/hunt/shrink.h"
@@ -22,12 +22,6 @@ namespace
 {
 
 using hunt::Case, hunt::Finding;
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 struct Options {
     double minutes = 5, shrinkSeconds = 120, effort = 1;

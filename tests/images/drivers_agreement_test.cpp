@@ -128,7 +128,7 @@ TEST_P(DriversAgreement, OnTheMeanOfEveryTile)
         const double scale = mean.whole.tiles[0][c].mean;
         worst = std::max(worst, std::abs(whole.mean) / scale);
         const statistics::Difference d = statistics::compare(whole, zero(mean.whole).tiles[0][c]);
-        EXPECT_TRUE(statistics::showsEquivalence(d, 0.01 * scale, 0.05))
+        EXPECT_TRUE(showsEquivalence(d, 0.01 * scale, 0.05))
             << "channel " << c << ": differs by " << whole.mean << " of " << scale;
     }
     EXPECT_GT(share, 0.9);

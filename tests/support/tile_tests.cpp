@@ -44,6 +44,12 @@ void checkSameShape(const TileEstimates& a, const TileEstimates& b)
 
 } // namespace
 
+bool showsEquivalence(const statistics::Difference& difference, double margin, double level)
+{
+    const double reach = statistics::studentQuantile(1 - level, difference.degreesOfFreedom) * difference.standardError;
+    return std::abs(difference.difference) + reach < margin;
+}
+
 TileEstimates tilesOf(const PixelEstimates& picture, uint32_t tileSize)
 {
     TileEstimates result{tileCount(picture.width, tileSize), tileCount(picture.height, tileSize), {}};
@@ -138,7 +144,7 @@ TileVerdict tilesAreEquivalent(const TileEstimates& a, const TileEstimates& b, d
             const statistics::Difference d = statistics::compare(left, right, 1e-6);
             const double scale = std::max(std::abs(right.mean), std::abs(pictureMean[c]));
             if (scale == 0 && d.difference == 0 && d.standardError == 0) continue; // both are exactly black
-            if (!statistics::showsEquivalence(d, margin * scale, level)) verdict.passes = false;
+            if (!showsEquivalence(d, margin * scale, level)) verdict.passes = false;
             const double reach = (std::abs(d.difference) + 2 * d.standardError) / scale;
             if (reach < worst) continue;
             worst = reach;

@@ -20,6 +20,9 @@ using statistics::Moments;
 
 constexpr uint32_t TILE_SIZE = 8; // pixels
 
+// Two one-sided tests: true when |a - b| < margin is shown at the level (its negation is rejected).
+bool showsEquivalence(const statistics::Difference& difference, double margin, double level);
+
 // What is known of the mean of every tile, rows of tiles from the top.
 struct TileEstimates {
     uint32_t columns = 0;

@@ -56,6 +56,30 @@ class Synthetic
     std::mt19937_64 random_;
 };
 
+TEST(Equivalence, IsRarelyShownAtTheMarginAndOftenShownWithinIt)
+{
+    std::mt19937_64 random(4);
+    const int trials = 5000;
+    const auto shown = [&](double difference) {
+        std::normal_distribution<double> left(1 + difference, 0.02), right(1, 0.02);
+        int count = 0;
+        for (int trial = 0; trial < trials; ++trial) {
+            Moments a, b;
+            for (int i = 0; i < 100; ++i) {
+                a.add(left(random));
+                b.add(right(random));
+            }
+            count += showsEquivalence(statistics::compare(estimateOf(a), estimateOf(b)), 0.01, 0.05);
+        }
+        return count;
+    };
+    const double spread = 4.9 * std::sqrt(0.05 * 0.95 * trials); // exceeded with probability 1e-6
+    EXPECT_NEAR(shown(0.01), 0.05 * trials, spread);
+    EXPECT_NEAR(shown(-0.01), 0.05 * trials, spread);
+    EXPECT_GT(shown(0), 0.9 * trials);
+    EXPECT_LT(shown(0.02), 3);
+}
+
 TEST(TileTests, DisagreeByChanceAtTheStatedLevelOnly)
 {
     Synthetic synthetic(1);

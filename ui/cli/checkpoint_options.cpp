@@ -79,7 +79,7 @@ double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& rep
                                 const std::function<void(uint64_t frame)>& bring)
 {
     identity_ = identityOf(renderer, report);
-    kept_ = std::chrono::steady_clock::now();
+    kept_ = Clock::now();
     if (resume_.empty()) return 0;
     const passes::Checkpoint checkpoint = passes::readCheckpoint(resume_);
     passes::requireSame(checkpoint, identity_, resume_);
@@ -94,9 +94,8 @@ double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& rep
 
 void CheckpointOptions::keep(passes::Renderer& renderer, double seconds)
 {
-    const auto now = std::chrono::steady_clock::now();
-    if (checkpoint_.empty() || now - kept_ < std::chrono::duration<double>(interval_)) return;
-    kept_ = now;
+    if (checkpoint_.empty() || secondsSince(kept_) < interval_) return;
+    kept_ = Clock::now();
     write(renderer, seconds, "Rendering goes on.");
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 // --checkpoint, --checkpoint-interval and --resume: long renders that survive whatever ends them.
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "engine/base/clock.h"
 #include "passes/checkpoint.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/run_report.h"
@@ -41,7 +41,7 @@ class CheckpointOptions
     std::string checkpoint_, resume_;
     double interval_ = 300; // s
     passes::Identity identity_;
-    std::chrono::steady_clock::time_point kept_;
+    Clock::time_point kept_;
 };
 
 } // namespace ui

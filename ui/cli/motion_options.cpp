@@ -4,6 +4,9 @@
 #include "ui/cli/number_range.h"
 #include "ui/cli/usage_error.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 namespace ui
@@ -88,6 +91,13 @@ std::vector<std::pair<std::string, std::string>> MotionOptions::toText() const
         text.emplace_back("speed", fmt::format("{}", speed_));
         text.emplace_back("loop", loop_);
     }
+    return text;
+}
+
+std::vector<std::pair<std::string, std::string>> motionText(const SceneSource& scene, const MotionOptions& camera)
+{
+    std::vector<std::pair<std::string, std::string>> text = scene.toText();
+    std::ranges::move(camera.toText(), std::back_inserter(text));
     return text;
 }
 

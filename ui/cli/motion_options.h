@@ -46,4 +46,7 @@ class MotionOptions
     std::string loop_ = "on";
 };
 
+// What decides the pixels besides settings, as metadata: the scene's pose and the camera's motion.
+std::vector<std::pair<std::string, std::string>> motionText(const SceneSource& scene, const MotionOptions& camera);
+
 } // namespace ui

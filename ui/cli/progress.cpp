@@ -52,14 +52,14 @@ void Progress::show(const std::string& what, double done, double total, const st
     if (what != what_) {
         what_ = what;
         start_ = now;
-    } else if (std::chrono::duration<double>(now - drawnAt_).count() < REDRAW_SECONDS) {
+    } else if (secondsSince(drawnAt_, now) < REDRAW_SECONDS) {
         return;
     }
     drawnAt_ = now;
     drawn_ = true;
     const double fraction = total > 0 ? std::min(done / total, 1.0) : 0;
     const int filled = static_cast<int>(fraction * BAR_CELLS);
-    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double seconds = secondsSince(start_, now);
     std::fputs(fmt::format("\r\033[K{} [{}{}] {}", what, std::string(size_t(filled), '#'),
                            std::string(size_t(BAR_CELLS - filled), '.'), progressText(done, total, seconds, unit))
                    .c_str(),

@@ -1,8 +1,9 @@
 #pragma once
 // One line on a terminal that says how far the work is, how fast, and how long it still takes.
 
-#include <chrono>
 #include <string>
+
+#include "engine/base/clock.h"
 
 namespace ui
 {
@@ -24,7 +25,6 @@ class Progress
     void clear();
 
   private:
-    using Clock = std::chrono::steady_clock;
     bool enabled_ = false;
     bool drawn_ = false;
     std::string what_;

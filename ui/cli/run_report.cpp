@@ -34,10 +34,16 @@ image::Metadata metadataOf(const RunReport& report)
     return metadata;
 }
 
+nlohmann::ordered_json toJson(const passes::Settings& settings, const image::Metadata& extra)
+{
+    nlohmann::ordered_json json = passes::toJson(settings);
+    for (const auto& [name, value] : extra) json[name] = value;
+    return json;
+}
+
 nlohmann::ordered_json toJson(const RunReport& report)
 {
-    nlohmann::ordered_json settings = passes::toJson(report.settings);
-    for (const auto& [name, value] : report.extra) settings[name] = value;
+    const nlohmann::ordered_json settings = toJson(report.settings, report.extra);
     const passes::RenderStats& stats = report.stats;
     return {{"scene", report.scene},
             {"method", settings["method"]},

@@ -22,7 +22,7 @@ std::string shellQuoted(const std::string& argument);
 struct RunReport {
     std::string scene; // as on the command line
     passes::Settings settings;
-    std::vector<std::pair<std::string, std::string>> extra; // what else decides the pixels: the camera's motion
+    std::vector<std::pair<std::string, std::string>> extra; // what else decides the pixels, as motionText says it
     gpu::Adapter adapter;
     uint64_t frames = 0;          // done
     bool partial = false;         // stopped before the end
@@ -37,6 +37,9 @@ struct RunReport {
 image::Metadata metadataOf(const RunReport& report);
 
 nlohmann::ordered_json toJson(const RunReport& report);
+
+// The settings and, like more of them, what else decides the pixels.
+nlohmann::ordered_json toJson(const passes::Settings& settings, const image::Metadata& extra);
 
 // Every pixel counts the same.
 glm::dvec3 meanOf(const image::Image& picture);

@@ -42,7 +42,8 @@ void animate(scene::Scene& scene, const SceneSource& source)
     if (!source.time && source.animation.empty()) {
         if (count > 0)
             scene.warnings.push_back(
-                fmt::format("The scene has {} animation{} and is shown at rest: --time SECONDS shows it in motion.",
+                fmt::format("The scene has {} animation{} and is shown at rest: --time SECONDS shows it as it is at "
+                            "that time.",
                             count, count == 1 ? "" : "s"));
         return;
     }

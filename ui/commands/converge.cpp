@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 namespace ui
@@ -118,9 +119,12 @@ void ConvergeCommand::write(ConvergeReport& report, const passes::RaceStore& sto
     const std::vector<NamedPlot> plots = convergePlots(report);
     for (const NamedPlot& plot : plots) writeText(folder / plot.file, plot.svg);
     writeText(folder / "converge.csv", convergeCsv(report));
-    for (const auto& [frames, made] : report.references)
+    for (const auto& [frames, made] : report.references) {
+        image::Metadata metadata = motionText(scene, motion);
+        metadata.insert(metadata.end(), {{"scene", scene.name}, {"frames-done", std::to_string(made.pathTraced)}});
         image::write(folder / (report.moving ? fmt::format("reference-{}.exr", frames) : "reference.exr"), made.picture,
-                     {{"scene", scene.name}, {"frames-done", std::to_string(made.pathTraced)}});
+                     metadata);
+    }
     writeText(folder / "index.html", convergePage(report, plots));
 }
 
@@ -156,8 +160,7 @@ int ConvergeCommand::run()
                          .device = gpu.adapter().name,
                          .driver = gpu.adapter().driver,
                          .settings = passes::toText(wanted)};
-    for (const auto& fact : scene.toText()) report.provenance.settings.push_back(fact);
-    for (const auto& fact : motion.toText()) report.provenance.settings.push_back(fact);
+    std::ranges::move(motionText(scene, motion), std::back_inserter(report.provenance.settings));
     for (const passes::NamedMethod& method : report.methods)
         report.provenance.settings.emplace_back("settings hash of " + method.name, hash(method.settings));
 

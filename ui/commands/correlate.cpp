@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 namespace ui
@@ -125,8 +126,7 @@ int CorrelateCommand::run()
         {"scene", scene.name}, {"device", gpu.adapter().name}, {"version", version()}};
     for (const auto& [name, value] : passes::toText(base))
         if (name != "method" && name != "seconds") facts.emplace_back(name, value);
-    for (const auto& fact : scene.toText()) facts.push_back(fact);
-    for (const auto& fact : motion.toText()) facts.push_back(fact);
+    std::ranges::move(motionText(scene, motion), std::back_inserter(facts));
     for (const passes::NamedMethod& method : list)
         facts.emplace_back("method " + method.name, passes::hash(method.settings));
     scene::Scene world = openScene(scene, base, progress);

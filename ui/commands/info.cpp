@@ -149,12 +149,15 @@ Json motionJson(const scene::Motion& motion)
             {"host_bytes", motion.bytes()}};
 }
 
-Json sceneJson(const std::string& name, const scene::Scene& world, const passes::RenderStats& stats)
+Json sceneJson(const SceneSource& source, const scene::Scene& world, const passes::RenderStats& stats)
 {
+    Json pose = Json::object();
+    for (const auto& [name, value] : source.toText()) pose[name] = value;
     Json cameras = Json::array();
     for (const scene::Camera& camera : world.cameras) cameras.push_back(camera.name);
     const double triangles = double(std::max<size_t>(world.triangles.size(), 1));
-    return {{"scene", name},
+    return {{"scene", source.name},
+            {"pose", pose},
             {"triangles", world.triangles.size()},
             {"vertices", world.positions.size()},
             {"materials", world.materials.size()},
@@ -213,6 +216,10 @@ void printScene(const Json& scene, const passes::Settings& settings)
     fmt::print("Scene \"{}\": {} triangles, {} vertices, {} materials, {} images\n", scene["scene"].get<std::string>(),
                scene["triangles"].get<uint64_t>(), scene["vertices"].get<uint64_t>(),
                scene["materials"].get<uint64_t>(), scene["images"].get<uint64_t>());
+    std::string pose;
+    for (const auto& [name, value] : scene["pose"].items())
+        pose += fmt::format("{}{} {}", pose.empty() ? "" : ", ", name, value.get<std::string>());
+    if (!pose.empty()) fmt::print("Pose: {}\n", pose);
     std::string lights;
     for (const auto& [kind, count] : scene["lights"].items())
         if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
@@ -261,7 +268,7 @@ int InfoCommand::run() const
         progress.clear();
         facts["device"] = gpu.adapter().name;
         facts["tuning"] = tuningJson(gpu.adapter().tuning);
-        facts["scene"] = sceneJson(scene.name, world, renderer.stats());
+        facts["scene"] = sceneJson(scene, world, renderer.stats());
         printScene(facts["scene"], chosen);
         fmt::print("Device: {}, tuned {}\n", gpu.adapter().name, gpu::toText(gpu.adapter().tuning));
     }

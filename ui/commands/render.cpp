@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -100,8 +101,8 @@ int RenderCommand::run()
     RunReport report{.scene = scene.name, .settings = settings.read()};
     motion.adjust(report.settings, settings, scene);
     frames.adjust(report.settings, settings, output);
-    for (const auto& facts : {scene.toText(), motion.toText(), frames.toText()})
-        report.extra.insert(report.extra.end(), facts.begin(), facts.end());
+    report.extra = motionText(scene, motion);
+    std::ranges::move(frames.toText(), std::back_inserter(report.extra));
     NamedFiles named;
     named.writes("--output", frames.given() ? frames.fileOf(report.settings.frames - 1).string() : output);
     named.writes("--stats", stats);

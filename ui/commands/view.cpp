@@ -15,22 +15,17 @@ namespace
 {
 
 struct ViewCommand {
-    WindowOptions window;
-    SceneSource scene{.name = "hall"};
+    WindowOptions window{.order = {.scene = {.name = "hall"}}};
     SettingsOptions settings;
 
     int run()
     {
         window.order.settings = settings.read();
-        window.order.scene = scene.name;
-        window.order.assetRoot = scene.assetRoot;
-        window.order.time = scene.time;
-        window.order.animation = scene.animation;
         NamedFiles files;
         files.writes("--report", window.report);
         files.reads("--reference", window.reference);
         settings.name(files, window.order.settings);
-        files.reads("SCENE", scene.name);
+        files.reads("SCENE", window.order.scene.name);
         if (!window.report.empty()) requireWritable(window.report);
         showWindow(window);
         return 0;
@@ -42,7 +37,7 @@ struct ViewCommand {
 Action setUpView(CLI::App& app)
 {
     const auto command = std::make_shared<ViewCommand>();
-    addSceneOptions(app, command->scene, "A .gltf or .glb file, or a built-in scene; without one: hall.");
+    addSceneOptions(app, command->window.order.scene, "A .gltf or .glb file, or a built-in scene; without one: hall.");
     app.add_option("--reference", command->window.reference,
                    "Picture to measure errors against over time: EXR, or a PNG that this program wrote.")
         ->option_text("FILE");

@@ -78,7 +78,7 @@ Json picturesOf(const ComparedPicture& reference, const std::vector<ComparedPict
 Json cropsOf(const image::Image& reference, const image::Image& picture, const image::Plane& flip)
 {
     Json list = Json::array();
-    for (const Crop& crop : worstCrops(flip, CROP_SIZE, CROP_COUNT)) {
+    for (const Crop& crop : worstCrops(flip, glm::ivec2(CROP_SIZE), CROP_COUNT)) {
         const std::string width = std::to_string(CROP_SHOWN * crop.width / std::max(crop.width, crop.height));
         const auto view = [&](const char* what, const std::vector<std::byte>& png) -> Json {
             return {{"what", what}, {"png", pngAddress(png)}, {"width", width}};

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -228,35 +228,26 @@ struct Writer {
                 : "");
     }
 
-    // The corner of the window, a quarter of the picture wide and high, where the methods err most.
-    glm::uvec2 worstWindow(const image::Image& reference, glm::uvec2 size) const
+    // The sum of relative squared errors over methods and channels; each is bounded, so that no bright pixel decides.
+    image::Plane errorsAgainst(const image::Image& reference) const
     {
-        double most = -1;
-        glm::uvec2 corner(0);
-        for (uint32_t y = 0; y + size.y <= reference.height; y += std::max(size.y / 4, 1u))
-            for (uint32_t x = 0; x + size.x <= reference.width; x += std::max(size.x / 4, 1u)) {
-                double sum = 0;
-                for (const image::Image& picture : report.pictures)
-                    for (uint32_t j = y; j < y + size.y; ++j)
-                        for (uint32_t i = x; i < x + size.x; ++i) {
-                            const glm::dvec3 r(reference.at(i, j)), d = glm::dvec3(picture.at(i, j)) - r;
-                            for (int c = 0; c < 3; ++c) // bounded, so that one bright pixel does not decide
-                                sum += std::min(d[c] * d[c] / (r[c] * r[c] + image::RELATIVE_EPSILON), 1.0);
-                        }
-                if (sum <= most) continue;
-                most = sum;
-                corner = {x, y};
+        image::Plane errors{int(reference.width), int(reference.height), std::vector<double>(reference.pixels.size())};
+        for (const image::Image& picture : report.pictures)
+            for (size_t i = 0; i < errors.values.size(); ++i) {
+                const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(picture.pixels[i]) - r;
+                for (int c = 0; c < 3; ++c)
+                    errors.values[i] += std::min(d[c] * d[c] / (r[c] * r[c] + image::RELATIVE_EPSILON), 1.0);
             }
-        return corner;
+        return errors;
     }
 
     Json pictures() const
     {
         if (report.pictures.size() != report.methods.size() || report.references.empty()) return false;
         const image::Image& reference = report.references.rbegin()->second.picture;
-        const glm::uvec2 size(std::max(reference.width / 4, 1u), std::max(reference.height / 4, 1u));
-        const glm::ivec2 corner = worstWindow(reference, size);
-        const Crop detail{corner.x, corner.y, int(size.x), int(size.y)};
+        const glm::ivec2 size(std::max(reference.width / 4, 1u), std::max(reference.height / 4, 1u));
+        const std::vector<Crop> worst = worstCrops(errorsAgainst(reference), size, 1);
+        const Crop detail = worst.empty() ? Crop{.width = size.x, .height = size.y} : worst.front();
         Json shown;
         const auto add = [&](const image::Image& picture, const std::string& caption) {
             shown.push_back({{"caption", caption},

@@ -6,9 +6,9 @@
 namespace ui
 {
 
-std::vector<Crop> worstCrops(const image::Plane& errors, int size, int count)
+std::vector<Crop> worstCrops(const image::Plane& errors, glm::ivec2 size, int count)
 {
-    const int width = std::min(size, errors.width), height = std::min(size, errors.height);
+    const int width = std::min(size.x, errors.width), height = std::min(size.y, errors.height);
     const size_t pitch = size_t(errors.width) + 1; // of the sums over all pixels above and to the left
     std::vector<double> sums(pitch * (size_t(errors.height) + 1));
     const auto sumAt = [&](int x, int y) -> double& { return sums[size_t(y) * pitch + size_t(x)]; };

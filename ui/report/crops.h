@@ -13,9 +13,9 @@ struct Crop {
     double meanError = 0;
 };
 
-// Up to `count` windows of `size` squared (or of the picture's side, where that is shorter), the largest mean error
-// first; none overlap, and none is without error.
-std::vector<Crop> worstCrops(const image::Plane& errors, int size, int count);
+// Up to `count` windows of this size (or of the picture's, where that is smaller), the largest mean error first; none
+// overlap, and none is without error.
+std::vector<Crop> worstCrops(const image::Plane& errors, glm::ivec2 size, int count);
 
 image::Image cropped(const image::Image& picture, const Crop& crop);
 image::Plane cropped(const image::Plane& plane, const Crop& crop);

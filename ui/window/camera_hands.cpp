@@ -18,7 +18,7 @@ constexpr double RADIANS_PER_POINT = 0.006; // of dragging
 // The pose to change; null before there is a scene.
 Pose* poseIn(Order& order, const SceneFacts* facts)
 {
-    if (!facts || facts->name != order.scene) return nullptr;
+    if (!facts || facts->name != order.scene.name) return nullptr;
     if (!order.pose) {
         size_t index = 0; // the name was good enough for the render thread
         for (size_t i = 0; i < facts->cameras.size(); ++i)
@@ -76,7 +76,7 @@ bool CameraHands::bookmarks(WindowState& state, const SceneFacts* facts, WindowM
     for (const KeyPress& press : state.keys) {
         const int i = press.key - GLFW_KEY_1;
         if (i < 0 || i >= int(BOOKMARKS)) continue;
-        std::optional<Pose>& bookmark = memory.bookmarks[state.order.scene][size_t(i)];
+        std::optional<Pose>& bookmark = memory.bookmarks[state.order.scene.name][size_t(i)];
         if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
             const bool placed = state.order.pose.has_value();
             if (const Pose* pose = poseIn(state.order, facts)) bookmark = *pose;

@@ -16,11 +16,6 @@ constexpr double PUBLISH_SECONDS = 1.0 / 60; // no more pictures than a screen s
 
 } // namespace
 
-SceneSource sourceOf(const Order& order)
-{
-    return {.name = order.scene, .assetRoot = order.assetRoot, .time = order.time, .animation = order.animation};
-}
-
 passes::Settings settingsOf(const Order& order, Side side)
 {
     const passes::Settings& world = order.settings;

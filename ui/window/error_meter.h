@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/image/metrics.h"
+#include "ui/window/locked.h"
 #include "ui/window/picture_view.h"
 
 namespace ui
@@ -30,16 +31,11 @@ class ErrorMeter
     // Points are a few percent of their time apart, and the last is measured again whenever the reference has got
     // better; pictures of a moving camera are not measured.
     void offer(const Pictures& pictures);
-    ErrorCurve curve(Side side) const { return locked(tracks_[side].curve); }
-    std::string complaint() const { return locked(complaint_); } // why nothing can be measured; empty: nothing is wrong
+    ErrorCurve curve(Side side) const { return copyOf(tracks_[side].curve, mutex_); }
+    // Why nothing can be measured; empty: nothing is wrong.
+    std::string complaint() const { return copyOf(complaint_, mutex_); }
 
   private:
-    template <class Value>
-    Value locked(const Value& value) const
-    {
-        const std::lock_guard lock(mutex_);
-        return value;
-    }
     void run(const std::stop_token& stop);
     bool due(Side side) const;
     void measure(std::unique_lock<std::mutex>& lock, Side side);

@@ -38,10 +38,7 @@ struct StudyOrder {
 
 // What the window wants to see.
 struct Order {
-    std::string scene;                     // empty: nothing yet
-    std::string assetRoot;                 // of scenes, as --asset-root
-    std::optional<double> time;            // of the scene, as --time
-    std::string animation;                 // of the scene, as --animation
+    SceneSource scene;                     // its name is empty: nothing yet
     passes::Settings settings;             // of A
     std::optional<passes::Settings> rival; // of B; what says which picture (size, camera, environment) is A's
     std::optional<Pose> pose;              // empty: the camera that the settings name
@@ -53,8 +50,6 @@ struct Order {
     uint64_t steps = 0;    // how many single frames were asked for while paused
     bool operator==(const Order&) const = default;
 };
-
-SceneSource sourceOf(const Order& order);
 
 // As they are to run: with A's world, and with a part of the resolution while the camera moves.
 passes::Settings settingsOf(const Order& order, Side side);

@@ -49,9 +49,9 @@ void drawActivity(const WindowState& state)
 // Scene, presets, and what goes back and forth.
 void drawFiles(WindowState& state)
 {
-    if (ImGui::Button("Open...")) ImGui::OpenPopup("open");
-    remember(state.places, "open");
-    explain("Recent scenes and built-in ones; or drop a .gltf or .glb file into the window.");
+    if (button(state.places, "Open...", "open",
+               "Recent scenes and built-in ones; or drop a .gltf or .glb file into the window."))
+        ImGui::OpenPopup("open");
     if (ImGui::BeginPopup("open")) {
         for (size_t i = 0; i < state.recent.size(); ++i) {
             const std::string name = std::filesystem::path(state.recent[i]).filename();
@@ -62,10 +62,10 @@ void drawFiles(WindowState& state)
         ImGui::EndPopup();
     }
     ImGui::SameLine();
-    if (ImGui::Button("Preset...")) ImGui::OpenPopup("preset");
-    remember(state.places, "preset");
-    explain(
-        "Sets several settings at once; the others stay. A preset's JSON file can be dropped into the window, too.");
+    if (button(state.places, "Preset...", "preset",
+               "Sets several settings at once; the others stay. A preset's JSON file can be dropped into the window, "
+               "too."))
+        ImGui::OpenPopup("preset");
     if (ImGui::BeginPopup("preset")) {
         for (const std::string& name : presetNames()) {
             if (ImGui::MenuItem(name.c_str())) state.requests.preset = name;

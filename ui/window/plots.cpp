@@ -4,6 +4,7 @@
 #include "ui/window/axes.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace ui
 {
@@ -41,6 +42,16 @@ double errorAt(const ErrorCurve& curve, double seconds, const Figure& figure)
         points.errors.push_back(figure.of(point.metrics));
     }
     return statistics::errorAt(points, seconds).value_or(0);
+}
+
+// What stands below the plot: B's error over A's after the same time, where both are known.
+std::string atEqualTime(const ErrorCurve (&curves)[SIDES], const Figure& figure)
+{
+    const auto last = [](const ErrorCurve& curve) { return curve.empty() ? 0 : curve.back().seconds; };
+    const double seconds = std::min(last(curves[A]), last(curves[B]));
+    const double a = errorAt(curves[A], seconds, figure), b = errorAt(curves[B], seconds, figure);
+    if (a > 0 && b > 0) return fmt::format("after {:.1f} s each: {} of B / A = {:.3g}", seconds, figure.name, b / a);
+    return "time is that of rendering alone";
 }
 
 void drawCurve(ImDrawList& list, const Axes& axes, const ErrorCurve& curve, const Figure& figure, ImU32 color,
@@ -126,15 +137,16 @@ std::string sentenceOf(const WindowState& state, Side side)
     return text;
 }
 
-// A window of this size at first, as far as the screen has it; `top`: how far below the screen's or above its bottom.
-bool openPlot(const WindowState& state, const char* title, bool& open, ImVec2 size, float top)
+// Where the person has not put it yet, it has this size, or less on a small screen, and lies at the screen's right
+// edge: `top` below its upper edge, or at the lower one where there is no `top` or no room below.
+bool openPlot(const WindowState& state, const char* title, bool& open, ImVec2 size, std::optional<float> top = {})
 {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const ImVec2 wanted = {std::min(size.x * state.scale, screen.x - 20),
                            std::min(size.y * state.scale, screen.y - 20)};
-    const float lowest = screen.y - wanted.y - 10;
+    const float lowest = screen.y - wanted.y - 10, y = top ? std::min(*top * state.scale, lowest) : lowest;
     ImGui::SetNextWindowSize(wanted, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowPos({screen.x - wanted.x - 10, std::min(top * state.scale, lowest)}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos({screen.x - wanted.x - 10, y}, ImGuiCond_FirstUseEver);
     return ImGui::Begin(title, &open, ImGuiWindowFlags_NoFocusOnAppearing);
 }
 
@@ -156,8 +168,7 @@ bool drawBetween(const Axes& axes, const char* unit, Curves&& curves)
 void drawErrorPlot(WindowState& state, const ErrorMeter& meter)
 {
     if (!state.plots) return;
-    constexpr float BOTTOM = 1e6f;
-    if (!openPlot(state, "Error against the reference", state.plots, {660, 320}, BOTTOM)) {
+    if (!openPlot(state, "Error against the reference", state.plots, {660, 320})) {
         ImGui::End();
         return;
     }
@@ -191,16 +202,9 @@ void drawErrorPlot(WindowState& state, const ErrorMeter& meter)
             drawCurve(list, axes, curves[side], figure, ImGui::ColorConvertFloat4ToU32(colors::SIDES[side]),
                       state.scale);
     });
-    std::string equal = "time is that of rendering alone";
-    if (!curves[A].empty() && !curves[B].empty()) {
-        const double seconds = std::min(curves[A].back().seconds, curves[B].back().seconds);
-        const double a = errorAt(curves[A], seconds, figure), b = errorAt(curves[B], seconds, figure);
-        if (a > 0 && b > 0)
-            equal = fmt::format("after {:.1f} s each: {} of B / A = {:.3g}", seconds, figure.name, b / a);
-    }
     if (fits)
         ImGui::GetWindowDrawList()->AddText({low.x, high.y + 1.3f * ImGui::GetTextLineHeight()},
-                                            IM_COL32(220, 220, 225, 255), equal.c_str());
+                                            IM_COL32(220, 220, 225, 255), atEqualTime(curves, figure).c_str());
     ImGui::SetCursorScreenPos({low.x + room.x - table + 10, low.y});
     ImGui::BeginChild("beside", {0, 0});
     drawFigures(curves);

@@ -4,8 +4,11 @@
 #include "passes/camera_path.h"
 #include "ui/cli/scene_source.h"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <unistd.h>
+#include <utility>
 
 namespace ui
 {
@@ -122,8 +125,7 @@ void RenderThread::closeDevice()
 bool RenderThread::sameWorld(const Order& order) const
 {
     const passes::Settings &next = order.settings, &now = running_.settings;
-    if (sourceOf(order) != sourceOf(running_) || passes::changeBetween(now, next) == passes::Change::Reload)
-        return false;
+    if (order.scene != running_.scene || passes::changeBetween(now, next) == passes::Change::Reload) return false;
     const auto parallel = [&](const std::string& name) { // what is compiled depends on it
         return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
     };
@@ -132,7 +134,7 @@ bool RenderThread::sameWorld(const Order& order) const
 
 void RenderThread::follow(const Order& order)
 {
-    if (order.scene.empty()) return;
+    if (order.scene.name.empty()) return;
     if (!device_) {
         say("Opening the device");
         device_ = std::make_unique<gpu::Device>(open_());
@@ -163,7 +165,7 @@ void RenderThread::load(const Order& order)
 {
     say("Loading the scene");
     auto world = std::make_unique<scene::Scene>(
-        openScene(sourceOf(order), order.settings, [&](const std::string& what, double fraction) {
+        openScene(order.scene, order.settings, [&](const std::string& what, double fraction) {
             say(fmt::format("{}: {:.0f}%", what, 100 * fraction));
         }));
     say("Building the BVH");
@@ -181,7 +183,7 @@ void RenderThread::load(const Order& order)
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
     compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), {&settings, 1}));
-    const SceneFacts facts{order.scene, scene_->cameras, scene_->origin, scene_->warnings};
+    const SceneFacts facts{order.scene.name, scene_->cameras, scene_->origin, scene_->warnings};
     const std::lock_guard lock(mutex_);
     sceneFacts_ = std::make_shared<const SceneFacts>(facts);
 }

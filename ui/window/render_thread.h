@@ -13,6 +13,7 @@
 #include "engine/gpu/shader_watcher.h"
 #include "ui/window/compile_ahead.h"
 #include "ui/window/contender.h"
+#include "ui/window/locked.h"
 #include "ui/window/order.h"
 #include "ui/window/studies.h"
 
@@ -29,9 +30,9 @@ class RenderThread
 
     void order(const Order& order);
 
-    ShotPointer shot(Side side) const { return locked(shots_[side]); } // the latest; null before the first
-    std::shared_ptr<const SceneFacts> scene() const { return locked(sceneFacts_); }
-    std::shared_ptr<const Findings> findings() const { return locked(findings_); } // of the studies; never null
+    ShotPointer shot(Side side) const { return copyOf(shots_[side], mutex_); } // the latest; null before the first
+    std::shared_ptr<const SceneFacts> scene() const { return copyOf(sceneFacts_, mutex_); }
+    std::shared_ptr<const Findings> findings() const { return copyOf(findings_, mutex_); } // of the studies; never null
     std::string activity() const; // what the order waits for, "Building the BVH: 40%"; empty: nothing
     // What is compiled for settings that nobody has asked for yet; empty: nothing.
     std::string ahead() const { return compiler_.activity(); }
@@ -39,12 +40,6 @@ class RenderThread
     std::optional<std::string> takeFailure(Order& back);
 
   private:
-    template <class Value>
-    Value locked(const Value& value) const
-    {
-        const std::lock_guard lock(mutex_);
-        return value;
-    }
     void run(const std::stop_token& stop);
     void follow(const Order& order);
     void load(const Order& order);

@@ -28,7 +28,8 @@ std::string freeName()
 std::string takeScreenshot(const Shot& shot)
 {
     const std::string name = freeName();
-    RunReport report{.scene = shot.order.scene,
+    const SceneSource& scene = shot.order.scene;
+    RunReport report{.scene = scene.name,
                      .settings = shot.order.settings,
                      .adapter = shot.adapter,
                      .frames = shot.frames,
@@ -36,7 +37,7 @@ std::string takeScreenshot(const Shot& shot)
     report.settings.frames = uint32_t(shot.frames);
     report.settings.seconds = 0;
     report.settings.average = !shot.single;
-    report.extra = sourceOf(shot.order).toText();
+    report.extra = scene.toText();
     std::string camera;
     if (shot.order.pose) {
         camera = name + ".camera.json";
@@ -48,9 +49,9 @@ std::string takeScreenshot(const Shot& shot)
     image::write(name + ".exr", shot.picture, metadataOf(report));
 
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
-                                   shellQuoted(shot.order.scene), name, name, shellQuoted(shot.adapter.name));
-    if (!shot.order.assetRoot.empty()) line += " --asset-root " + shellQuoted(shot.order.assetRoot);
-    for (const auto& [option, value] : sourceOf(shot.order).toText()) line += " --" + option + " " + shellQuoted(value);
+                                   shellQuoted(scene.name), name, name, shellQuoted(shot.adapter.name));
+    if (!scene.assetRoot.empty()) line += " --asset-root " + shellQuoted(scene.assetRoot);
+    for (const auto& [option, value] : scene.toText()) line += " --" + option + " " + shellQuoted(value);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

@@ -20,7 +20,7 @@ bool sameSubject(const StudyKind& kind, Side side, const Order& a, const Order& 
     const auto settings = [&](const Order& order) {
         return kind.ofPicture ? passes::referenceSettings(settingsOf(order, side)) : settingsOf(order, side);
     };
-    return a.pose == b.pose && sourceOf(a) == sourceOf(b) && a.restarts == b.restarts &&
+    return a.pose == b.pose && a.scene == b.scene && a.restarts == b.restarts &&
            orderedOf(kind, side, a) == orderedOf(kind, side, b) && settings(a) == settings(b);
 }
 
@@ -34,23 +34,21 @@ void Studies::clear()
 
 passes::StageList Studies::stagesFor(const Order& order, const passes::Renderer& like)
 {
-    std::vector<passes::Settings> list;
-    passes::Settings plain = settingsOf(order, A);
+    std::vector<passes::Settings> sides = {settingsOf(order, A)}, list;
+    if (order.rival) sides.push_back(settingsOf(order, B));
+    passes::Settings plain = sides[A];
     plain.method = passes::Method::Pt;
     if (order.studies.reference || order.studies.correlation || order.studies.floor) list.push_back(plain);
     if (order.studies.correlation || order.studies.floor) list.push_back(passes::emissionSettings(plain));
-    for (const Side side : {A, B}) {
-        const passes::Settings settings = settingsOf(order, side);
-        if (settings.method == passes::Method::Pt || (side == B && !order.rival)) continue;
+    for (const passes::Settings& settings : sides) {
+        if (settings.method == passes::Method::Pt) continue;
         if (order.studies.correlation) list.push_back(settings);
         if (order.studies.correlation || order.studies.floor) list.push_back(passes::lawSettings(settings));
     }
     passes::StageList stages = passes::stagesOf(like.scene(), list);
-    if (order.studies.savings > 0) {
-        const passes::Settings settings = settingsOf(order, A);
-        for (const auto& [name, needed] : passes::stagesOf(like.scene(), {&settings, 1}, true))
+    if (order.studies.savings > 0)
+        for (const auto& [name, needed] : passes::stagesOf(like.scene(), {&sides[A], 1}, true))
             stages.emplace_back(name, passes::withAllFeatures(needed));
-    }
     return stages;
 }
 

@@ -106,12 +106,15 @@ class Window
         } else if (kind == ".exr" || kind == ".png" || kind == ".hdr" || kind == ".jpg" || kind == ".jpeg") {
             loadReference(file);
         } else {
-            state_.order.scene = file;
-            state_.order.time.reset();
-            state_.order.animation.clear();
+            state_.order.scene = {.name = file, .assetRoot = state_.order.scene.assetRoot}; // at rest
             state_.order.pose.reset();
             state_.order.settings.camera.clear();
         }
+    }
+
+    static std::string linesOf(const std::vector<std::string>& sentences)
+    {
+        return fmt::format("{}", fmt::join(sentences, "\n"));
     }
 
     // An Error is told to the person.
@@ -151,7 +154,7 @@ class Window
         attempt([&] {
             auto [reference, warnings] = loading_.get();
             setReference(std::move(reference));
-            for (const std::string& warning : warnings) state_.message = warning;
+            if (!warnings.empty()) state_.message = linesOf(warnings);
         });
     }
 
@@ -297,14 +300,19 @@ class Window
         }
         state_.activity = thread_.activity();
         state_.ahead = thread_.ahead();
-        const std::shared_ptr<const SceneFacts> facts = thread_.scene();
-        if (facts && facts != facts_) {
-            memory_.opened(std::filesystem::exists(facts->name) ? std::filesystem::absolute(facts->name).string()
-                                                                : facts->name);
-            state_.recent = memory_.recent;
-            remember();
-        }
+        if (const std::shared_ptr<const SceneFacts> facts = thread_.scene(); facts != facts_) takeScene(facts);
+    }
+
+    // What was said of the scene before goes with it.
+    void takeScene(const std::shared_ptr<const SceneFacts>& facts)
+    {
+        const std::string before = facts_ ? linesOf(facts_->warnings) : "", now = linesOf(facts->warnings);
+        if (!now.empty() || state_.message == before) state_.message = now;
         facts_ = facts;
+        memory_.opened(std::filesystem::exists(facts->name) ? std::filesystem::absolute(facts->name).string()
+                                                            : facts->name);
+        state_.recent = memory_.recent;
+        remember();
     }
 
     // Looks at every pixel, so only when there is something new.

@@ -1,6 +1,7 @@
 #include "ui/window/window_report.h"
 
 #include "engine/base/memory.h"
+#include "ui/cli/run_report.h"
 #include "ui/window/false_color.h"
 
 #include <cmath>
@@ -17,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 Json reportOf(const Shot& shot)
 {
-    return {{"scene", shot.order.scene},
-            {"settings", passes::toJson(shot.order.settings)},
+    return {{"scene", shot.order.scene.name},
+            {"settings", toJson(shot.order.settings, shot.order.scene.toText())},
             {"frames", shot.frames},
             {"seconds", shot.seconds},
             {"moving", shot.order.moving},

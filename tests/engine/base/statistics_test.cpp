@@ -125,29 +125,6 @@ TEST(Compare, TellsExactValuesApart)
     EXPECT_LT(compare(one, {1.00001, 0, INF}, 1e-6).p, 1e-9);
 }
 
-TEST(Equivalence, IsRarelyShownAtTheMarginAndOftenShownWithinIt)
-{
-    std::mt19937_64 random(4);
-    const int trials = 5000;
-    const auto shown = [&](double difference) {
-        std::normal_distribution<double> left(1 + difference, 0.02), right(1, 0.02);
-        int count = 0;
-        for (int trial = 0; trial < trials; ++trial) {
-            Moments a, b;
-            for (int i = 0; i < 100; ++i) {
-                a.add(left(random));
-                b.add(right(random));
-            }
-            count += showsEquivalence(compare(estimateOf(a), estimateOf(b)), 0.01, 0.05);
-        }
-        return count;
-    };
-    expectRate(shown(0.01), trials, 0.05);
-    expectRate(shown(-0.01), trials, 0.05);
-    EXPECT_GT(shown(0), 0.9 * trials);
-    EXPECT_LT(shown(0.02), 3);
-}
-
 // Rejections among 200 chi-squared tests of draws from `truth` against the flat distribution.
 int chiSquaredRejections(const std::vector<double>& truth, double level)
 {

@@ -64,7 +64,8 @@ TEST_F(AnimationOptions, ShowTheSceneAtATime)
     const size_t middle = 8 * 16 + 7;
     const std::vector<glm::vec3> rest = picture({});
     EXPECT_EQ(rest[middle], LIT);
-    EXPECT_EQ(err, "Warning: The scene has 1 animation and is shown at rest: --time SECONDS shows it in motion.\n");
+    EXPECT_EQ(err, "Warning: The scene has 1 animation and is shown at rest: --time SECONDS shows it as it is at that "
+                   "time.\n");
     EXPECT_EQ(picture({"--animation", "off"}), rest);
     EXPECT_EQ(err, "");
     for (const std::string animation : {"all", "slide", "0"}) {
@@ -125,11 +126,13 @@ TEST_F(AnimationOptions, InfoTellsWhatMoves)
 {
     breakTimes();
     const std::string json = directory / "info.json";
-    const std::string told = run({"info", scene, "--json", json}).out;
+    const std::string told = run({"info", scene, "--time", "0.5", "--animation", "slide", "--json", json}).out;
+    EXPECT_NE(told.find("Pose: time 0.5, animation slide\n"), std::string::npos) << told;
     EXPECT_NE(told.find("Animation 0 \"slide\": 2.000 s, 2 keys; moves translation of 1\n"), std::string::npos) << told;
     EXPECT_NE(told.find("Animation 1 \"broken\": 0.000 s, 0 keys; cannot be played: animations[1]"), std::string::npos);
     EXPECT_NE(told.find("Can move: 1 rigid parts, 1 triangles, 1 nodes;"), std::string::npos) << told;
-    const nlohmann::json motion = readJson(json)["scene"]["motion"];
+    const nlohmann::json facts = readJson(json)["scene"], motion = facts["motion"];
+    EXPECT_EQ(facts["pose"], nlohmann::json({{"time", "0.5"}, {"animation", "slide"}}));
     EXPECT_EQ(motion["animations"][0]["name"], "slide");
     EXPECT_EQ(motion["animations"][0]["seconds"], 2);
     EXPECT_EQ(motion["animations"][0]["moves"]["translation"], 1);

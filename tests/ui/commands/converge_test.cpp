@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 using namespace std::chrono_literals;
@@ -30,6 +31,11 @@ class Converge : public Trichrome
         return words;
     }
     std::string file(const std::string& name) const { return readFile(directory / name); }
+    std::map<std::string, std::string> metadata(const std::string& picture) const
+    {
+        const image::Metadata list = image::read(directory / picture).metadata;
+        return {list.begin(), list.end()};
+    }
     std::vector<std::vector<std::string>> rows(const std::string& name) const
     {
         std::vector<std::vector<std::string>> table;
@@ -77,6 +83,7 @@ TEST_F(Converge, LeavesATableAPageAndPictures)
 TEST_F(Converge, AMovingCameraIsMeasuredFrameByFrame)
 {
     runWell(tiny("out", {"--runs", "2", "--frames", "3", "--orbit", "5", "--methods", "pt,restir-pt"}));
+    EXPECT_EQ(metadata("out/reference-3.exr").at("orbit"), "5");
     const auto table = rows("out/converge.csv");
     EXPECT_EQ(table.size(), 1 + 2 * 2 * 3u);
     for (const char* name : {"1", "2", "3"}) EXPECT_FALSE(file(std::string("out/reference-") + name + ".exr").empty());
@@ -130,9 +137,11 @@ TEST_F(Converge, MeasuresAgainstAFile)
 {
     const std::string reference = directory / "reference.exr";
     runWell({"render", "cornell", "-o", reference, "--size", "16x12", "--max-bounces", "2", "--frames", "64"});
-    runWell(tiny("out", {"--runs", "2", "--frames", "2", "--methods", "pt", "--reference", reference}));
+    runWell(tiny("out",
+                 {"--runs", "2", "--frames", "2", "--methods", "pt", "--reference", reference, "--animation", "off"}));
     EXPECT_NE(file("out/index.html").find("nothing is subtracted"), std::string::npos);
     EXPECT_EQ(image::read(directory / "out/reference.exr").image.pixels, image::read(reference).image.pixels);
+    EXPECT_EQ(metadata("out/reference.exr").at("animation"), "off");
     const std::string small = directory / "small.exr";
     runWell({"render", "cornell", "-o", small, "--size", "8x8", "--max-bounces", "2", "--frames", "1"});
     expectRefusal(tiny("other", {"--reference", small}), 1, "has 8x8 pixels, but --size is 16x12");

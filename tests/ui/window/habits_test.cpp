@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "tests/support/program.h"
+#include "tests/support/tiny_gltf.h"
 #include "tests/ui/window/window_fixture.h"
 #include "tests/ui/window/x_client.h"
 
@@ -90,6 +91,35 @@ TEST_F(WindowHabits, ASceneCanBeDroppedABadOneChangesNothingAndTheRestIsRemember
     EXPECT_TRUE(kept["bookmarks"]["cornell"][0].is_object());
     ASSERT_TRUE(until([](const Json& json) { return json["places"].contains("recent.1"); }, [&] { click("open"); }));
     EXPECT_TRUE(until([](const Json& json) { return json["scene"] == "cornell"; }, [&] { click("recent.1"); }));
+    EXPECT_EQ(close(), 0);
+}
+
+// --time is of the scene on the command line alone; what the loader says of a scene is shown for as long as it is open.
+TEST_F(WindowHabits, ASceneOpenedLaterIsAtRestAndItsWarningsAreShown)
+{
+    TinyGltf file;
+    file.animate({{"node", 0}, {"path", "translation"}}, {0, 2}, {0, 0, 0, 9, 0, 0}, "VEC3");
+    file.load(); // writes it
+    const std::string scene = (file.folder / "tiny.gltf").string();
+    view();
+    ASSERT_TRUE(comes(runs("method", "pt")));
+    EXPECT_EQ(report()["message"], "");
+    ASSERT_EQ(close(), 0);
+
+    view({"--time", "0.5"}, scene);
+    ASSERT_TRUE(comes(runs("time", "0.5")));
+    std::string message = report()["message"];
+    EXPECT_NE(message.find("The file has no camera"), std::string::npos) << message;
+    EXPECT_NE(message.find("The file has no light"), std::string::npos) << message;
+    EXPECT_EQ(message.find("at rest"), std::string::npos) << message;
+    ASSERT_TRUE(dropFile("Trichrome", scene));
+    ASSERT_TRUE(comes([](const Json& json) { return !json["settings"].contains("time") && json["frames"] > 0; }));
+    message = report()["message"];
+    EXPECT_NE(message.find("The file has no light"), std::string::npos) << message;
+    EXPECT_NE(message.find("The scene has 1 animation and is shown at rest"), std::string::npos) << message;
+    ASSERT_TRUE(until([](const Json& json) { return json["places"].contains("recent.1"); }, [&] { click("open"); }));
+    ASSERT_TRUE(until([](const Json& json) { return json["scene"] == "cornell"; }, [&] { click("recent.1"); }));
+    EXPECT_EQ(report()["message"], "");
     EXPECT_EQ(close(), 0);
 }
 

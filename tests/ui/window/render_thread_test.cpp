@@ -32,7 +32,7 @@ gpu::Device open()
 
 ui::Order small()
 {
-    ui::Order order{.scene = "cornell"};
+    ui::Order order{.scene = {.name = "cornell"}};
     order.settings.width = 32;
     order.settings.height = 18;
     order.settings.maxBounces = 1;
@@ -122,9 +122,9 @@ TEST(RenderThread, AnotherTimeShowsAnotherPose)
     file.load(); // writes it
     ui::RenderThread thread(open, "", [] {});
     ui::Order order = small();
-    order.scene = (file.folder / "tiny.gltf").string();
+    order.scene.name = (file.folder / "tiny.gltf").string();
     const auto middle = [&](std::optional<double> time) {
-        order.time = time;
+        order.scene.time = time;
         thread.order(order);
         EXPECT_TRUE(comes([&] { return thread.shot(ui::A) && thread.shot(ui::A)->order == order; }));
         return thread.shot(ui::A)->picture.pixels.at(9 * 32 + 15);
