@@ -1,0 +1,114 @@
+// render --sequence, and scenes that play (--fps), as a person would use them. Covers ui/cli/sequence_output.cpp and
+// ui/cli/motion_options.cpp.
+
+#include "tests/support/trichrome.h"
+
+#include "engine/image/image.h"
+#include "tests/support/tiny_gltf.h"
+
+namespace
+{
+
+class Sequences : public Trichrome
+{
+  protected:
+    // A triangle that shines, slides out of sight in 2 s, and is what there is to see at the picture's middle.
+    Sequences()
+    {
+        file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+        file.json["nodes"].push_back({{"camera", 0}, {"translation", {0.4, 0.4, 2}}});
+        file.json["scenes"][0]["nodes"].push_back(1);
+        file.material()["emissiveFactor"] = {1, 1, 1};
+        file.animate({{"node", 0}, {"path", "translation"}}, {0, 2}, {0, 0, 0, 9, 0, 0}, "VEC3");
+        file.load();
+    }
+
+    std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more) const
+    {
+        std::vector<std::string> words = {"render", (file.folder / "tiny.gltf").string(), "-o", directory / output};
+        words.insert(words.end(), {"--size", "16x16", "--max-bounces", "2"});
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+    std::vector<glm::vec3> pixels(const std::string& name) const { return image::read(directory / name).image.pixels; }
+
+    TinyGltf file;
+};
+
+constexpr size_t MIDDLE = 8 * 16 + 7;
+const glm::vec3 DARK(0), LIT(1);
+
+} // namespace
+
+TEST_F(Sequences, WriteEveryFrameOfAScene)
+{
+    runWell(command("%04d.exr", {"--sequence", "0:4", "--fps", "1"}));
+    for (const auto& [name, color] :
+         {std::pair("0000.exr", LIT), {"0001.exr", DARK}, {"0002.exr", LIT}, {"0003.exr", DARK}})
+        EXPECT_EQ(pixels(name)[MIDDLE], color) << name; // at 2 s it begins again
+    EXPECT_FALSE(std::filesystem::exists(directory / "0004.exr"));
+
+    runWell(command("%d.exr", {"--sequence", "0:4", "--fps", "1", "--loop", "off"}));
+    for (const auto& [name, color] : {std::pair("0.exr", LIT), {"1.exr", DARK}, {"2.exr", DARK}, {"3.exr", DARK}})
+        EXPECT_EQ(pixels(name)[MIDDLE], color) << name;
+
+    runWell(command("%d.exr", {"--sequence", "0:2", "--fps", "1", "--time", "1", "--speed", "-1"}));
+    EXPECT_EQ(pixels("0.exr")[MIDDLE], DARK);
+    EXPECT_EQ(pixels("1.exr")[MIDDLE], LIT);
+}
+
+TEST_F(Sequences, AreTheFramesThatOneRenderWouldEndWith)
+{
+    for (const std::string method : {"pt", "rgb-restir"}) {
+        const std::vector<std::string> play = {"--fps", "8", "--method", method};
+        const auto with = [&](std::vector<std::string> words) {
+            words.insert(words.end(), play.begin(), play.end());
+            return words;
+        };
+        runWell(command("%d.exr", with({"--sequence", "0:4"})));
+        runWell(command("end.exr", with({"--frames", "3"})));
+        EXPECT_EQ(pixels("2.exr"), pixels("end.exr")) << method;
+        runWell(command("late%d.exr", with({"--sequence", "2:3", "--warm-up", "2"})));
+        EXPECT_EQ(pixels("2.exr"), pixels("late2.exr")) << method;
+        EXPECT_FALSE(std::filesystem::exists(directory / "late1.exr"));
+        EXPECT_NE(pixels("2.exr"), pixels("3.exr")) << method;
+    }
+    runWell(command("still.exr", {"--time", "0.25", "--animation", "all"}));
+    runWell(command("end.exr", {"--fps", "8", "--frames", "3", "--method", "pt"}));
+    EXPECT_EQ(pixels("still.exr"), pixels("end.exr")); // what it sees shines alike in every frame
+}
+
+TEST_F(Sequences, GoOnFromACheckpointToTheSameBits)
+{
+    const std::string checkpoint = directory / "x.ckpt";
+    const std::vector<std::string> play = {"--fps", "8", "--method", "rgb-restir", "--warm-up", "1"};
+    const auto with = [&](std::vector<std::string> words) {
+        words.insert(words.end(), play.begin(), play.end());
+        return words;
+    };
+    runWell(command("whole%d.exr", with({"--sequence", "1:6"})));
+    runWell(command("part%d.exr", with({"--sequence", "1:3", "--checkpoint", checkpoint})));
+    runWell(command("part%d.exr", with({"--sequence", "1:6", "--resume", checkpoint})));
+    for (int frame = 1; frame < 6; ++frame)
+        EXPECT_EQ(pixels("whole" + std::to_string(frame) + ".exr"), pixels("part" + std::to_string(frame) + ".exr"));
+    expectRefusal(command("%d.exr", {"--sequence", "0:6", "--fps", "9", "--resume", checkpoint}), 1, "Cannot resume");
+}
+
+TEST_F(Sequences, RefuseWhatMakesNoSense)
+{
+    const auto refuses = [&](const std::string& output, const std::vector<std::string>& more, const std::string& part) {
+        expectRefusal(command(output, more), 2, part);
+    };
+    for (const std::string range : {"5", "3:3", "4:2", "-1:2", "0:9999999", "a:b", "0:1:2", "1.5:2"})
+        refuses("%d.png", {"--sequence", range}, "is no range of frames");
+    for (const std::string output : {"x.png", "%s.png", "%d%d.png", "%x.png"})
+        refuses(output, {"--sequence", "0:2"}, "must say once where its number goes");
+    refuses("%d.bmp", {"--sequence", "0:2"}, "bmp");
+    refuses("%d.png", {"--sequence", "0:2", "--frames", "3"}, "--frames cannot be combined with --sequence");
+    refuses("%d.png", {"--sequence", "0:2", "--average", "on"}, "--average on cannot be combined with --sequence");
+    refuses("x.png", {"--fps", "5", "--average", "on"}, "--average on cannot be combined with --fps");
+    refuses("x.png", {"--fps", "5", "--animation", "off"}, "leave out one of the two");
+    refuses("x.png", {"--speed", "2"}, "--fps");
+    refuses("x.png", {"--fps", "nan"}, "--fps");
+    expectRefusal(command("none/%d.png", {"--sequence", "0:2"}), 1, "none");
+}
