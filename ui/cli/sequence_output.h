@@ -30,7 +30,8 @@ class SequenceOutput
     // Nothing for a frame of the warm-up, or without --sequence.
     std::filesystem::path fileOf(uint64_t rendered) const;
 
-    // As metadata, like settings: the number of the first frame of all, which decides what each shows. The last may change.
+    // As metadata, like settings: the number of the first frame of all, which decides what each shows. The last may
+    // change.
     std::vector<std::pair<std::string, std::string>> toText() const;
 
   private:

@@ -1,5 +1,5 @@
-// render --sequence, and scenes that play (--fps), as a person would use them. Covers ui/cli/sequence_output.cpp and
-// ui/cli/motion_options.cpp.
+// render --sequence, and scenes that play (--fps), as a person would use them.
+// Covers ui/cli/sequence_output.cpp, ui/cli/motion_options.cpp.
 
 #include "tests/support/trichrome.h"
 
