@@ -57,7 +57,7 @@ TEST(Playback, GoesOnByStepsAndBeginsAgain)
     EXPECT_EQ(at(9), 0);
 }
 
-class SequenceOfFrames : public support::GpuTest
+class SequenceOfFrames : public GpuTest
 {
 };
 
