@@ -29,6 +29,12 @@ Scene makeLamps();
 // A room lit only through its doorway, from a white lamp around the corner: nearly all light is indirect.
 Scene makeDim();
 
+// A carousel under bulbs of nearly one color each, in a hall: all that moves is rigid. 8 s a turn.
+Scene makeCarousel();
+
+// Flags in front of a wall, lit from both sides by strongly colored lamps: all that moves changes its shape. 4 s.
+Scene makeFlags();
+
 // The inside of a closed Lambertian sphere (flat facets) that emits Le = 1 - rho everywhere: seen from inside, after at
 // most D scattering events, L = Le (1 + rho + ... + rho^D) = 1 - rho^(D+1) per channel, whatever the direction.
 Scene makeFurnace();
