@@ -29,10 +29,10 @@ Scene makeLamps();
 // A room lit only through its doorway, from a white lamp around the corner: nearly all light is indirect.
 Scene makeDim();
 
-// A carousel under bulbs of nearly one color each, in a hall: all that moves is rigid. 8 s a turn.
+// A carousel in a hall, under lamps of nearly one color each. Rigid bodies, emitters and spotlights move; 8 s.
 Scene makeCarousel();
 
-// Flags in front of a wall, lit from both sides by strongly colored lamps: all that moves changes its shape. 4 s.
+// Flags and a pennant in front of a wall, strongly colored lamps on both sides of them. Deforming bodies move; 4 s.
 Scene makeFlags();
 
 // The inside of a closed Lambertian sphere (flat facets) that emits Le = 1 - rho everywhere: seen from inside, after at

@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -99,91 +101,107 @@ Scene lathe(std::span<const glm::vec2> profile, uint32_t segments)
     return shape;
 }
 
-} // namespace
-
-Scene makeCarousel()
+glm::dmat4 moved(const glm::dvec3& by)
 {
-    Scene scene;
-    scene.name = "carousel";
-    addHall(scene);
-    MotionBuilder builder(scene, PERIOD);
+    return glm::translate(glm::dmat4(1), by);
+}
 
-    const uint32_t ivory = addMaterial(scene, glossy("ivory", {0.76f, 0.72f, 0.64f}, 0.4f));
-    const uint32_t lacquer = addMaterial(scene, glossy("lacquer", {0.42f, 0.05f, 0.05f}, 0.2f));
-    const uint32_t chalk = addMaterial(scene, diffuse("chalk", {0.78f, 0.77f, 0.74f}));
-    const uint32_t brass =
-        addMaterial(scene, {.name = "brass", .baseColor = {0.80f, 0.58f, 0.28f, 1}, .metallic = 1, .roughness = 0.3f});
-    const uint32_t mirror = addMaterial(
-        scene, {.name = "mirror", .baseColor = {0.84f, 0.84f, 0.84f, 1}, .metallic = 1, .roughness = 0.12f});
-    const uint32_t ember = addMaterial(scene, emitter("ember", {12, 2.4f, 0.1f}));
-    const uint32_t bulbs[] = {addMaterial(scene, emitter("red bulb", {180, 0.2f, 0.1f})),
-                              addMaterial(scene, emitter("green bulb", {0.3f, 110, 0.5f})),
-                              addMaterial(scene, emitter("blue bulb", {0.2f, 0.8f, 280})),
-                              addMaterial(scene, emitter("warm bulb", {70, 26, 2}))};
+struct Palette {
+    uint32_t ivory, lacquer, chalk, brass, mirror, ember;
+    uint32_t red, green, blue, warm; // bulbs
+};
 
-    // The carousel itself turns once.
+Palette addPalette(Scene& scene)
+{
+    return {
+        .ivory = addMaterial(scene, glossy("ivory", {0.76f, 0.72f, 0.64f}, 0.4f)),
+        .lacquer = addMaterial(scene, glossy("lacquer", {0.42f, 0.05f, 0.05f}, 0.2f)),
+        .chalk = addMaterial(scene, diffuse("chalk", {0.78f, 0.77f, 0.74f})),
+        .brass = addMaterial(
+            scene, {.name = "brass", .baseColor = {0.80f, 0.58f, 0.28f, 1}, .metallic = 1, .roughness = 0.3f}),
+        .mirror = addMaterial(
+            scene, {.name = "mirror", .baseColor = {0.84f, 0.84f, 0.84f, 1}, .metallic = 1, .roughness = 0.12f}),
+        .ember = addMaterial(scene, emitter("ember", {12, 2.4f, 0.1f})),
+        .red = addMaterial(scene, emitter("red bulb", {180, 0.2f, 0.1f})),
+        .green = addMaterial(scene, emitter("green bulb", {0.3f, 110, 0.5f})),
+        .blue = addMaterial(scene, emitter("blue bulb", {0.2f, 0.8f, 280})),
+        .warm = addMaterial(scene, emitter("warm bulb", {40, 9, 0.3f})),
+    };
+}
+
+// Turns once. Returns its node.
+uint32_t addCarousel(MotionBuilder& builder, const Palette& palette)
+{
     const uint32_t carousel = builder.addNode({});
     builder.turn(carousel, UP, 1);
     const glm::vec2 rim[] = {{DISC, 0}, {DISC, DECK - 0.02f}, {DISC - 0.05f, DECK}};
     const glm::vec2 eaves[] = {{0, ROOF}, {DISC, ROOF}, {DISC + 0.04f, ROOF + 0.1f}};
     const glm::vec2 pillar[] = {{0.3f, DECK}, {0.3f, 0.5f}, {0.16f, 0.62f}, {0.16f, ROOF}};
-    builder.addPart(carousel, builder.addMesh(lathe(rim, 48)), brass);
-    builder.addPart(carousel, builder.addMesh(lathe(eaves, 48)), ivory);
-    builder.addPart(carousel, builder.addMesh(lathe(pillar, 24)), brass);
-    const uint32_t floor = builder.addMesh(sector(DISC - 0.05f, DECK, DECK));
+    builder.addPart(carousel, builder.addMesh(lathe(rim, 48)), palette.brass);
+    builder.addPart(carousel, builder.addMesh(lathe(eaves, 48)), palette.ivory);
+    builder.addPart(carousel, builder.addMesh(lathe(pillar, 24)), palette.brass);
+    const uint32_t deck = builder.addMesh(sector(DISC - 0.05f, DECK, DECK));
     const uint32_t roof = builder.addMesh(sector(DISC + 0.04f, ROOF + 0.1f, ROOF + 1.15f));
     for (int i = 0; i < SECTORS; ++i)
-        for (const uint32_t mesh : {floor, roof})
-            builder.addPart(carousel, mesh, i % 2 == 0 ? ivory : lacquer, turned(double(i) / SECTORS));
+        for (const uint32_t mesh : {deck, roof})
+            builder.addPart(carousel, mesh, i % 2 == 0 ? palette.ivory : palette.lacquer, turned(double(i) / SECTORS));
+    return carousel;
+}
 
-    // Bodies on it: some stand, one turns about its own axis, two go up and down on their poles.
+// On its six seats: some stand, one turns about its own axis, two go up and down on their poles.
+void addBodies(MotionBuilder& builder, const Palette& palette, uint32_t carousel)
+{
+    std::vector<uint32_t> seats;
+    for (int i = 0; i < 6; ++i) seats.push_back(builder.addNode({.translation = around(SEAT, 0, i / 6.0)}, carousel));
     Scene bar, box;
     addBar(bar, 0, {0, DECK, 0}, {0, ROOF, 0}, 0.025f);
     addBox(box, 0, glm::vec3(-0.3f), glm::vec3(0.3f));
-    const glm::vec2 plinth[] = {{0.26f, DECK}, {0.26f, 0.5f}, {0.2f, 0.56f}, {0, 0.56f}};
+    const glm::vec2 socket[] = {{0.26f, DECK}, {0.26f, 0.5f}, {0.2f, 0.56f}, {0, 0.56f}};
     const glm::vec2 vase[] = {{0, DECK},      {0.16f, DECK}, {0.3f, 0.5f},  {0.34f, 0.72f},
                               {0.26f, 0.96f}, {0.12f, 1.1f}, {0.2f, 1.24f}, {0, 1.1f}};
-    const auto seat = [&](int place) {
-        return builder.addNode({.translation = around(SEAT, 0, place / 6.0)}, carousel);
-    };
-    const auto bob = [&](int place, double low, double high) {
-        const uint32_t node = builder.addNode({}, seat(place));
+    const uint32_t pole = builder.addMesh(bar), plinth = builder.addMesh(lathe(socket, 24));
+    for (const uint32_t seat : {seats[1], seats[3]}) builder.addPart(seat, pole, palette.brass);
+    for (const uint32_t seat : {seats[0], seats[2], seats[5]}) builder.addPart(seat, plinth, palette.ivory);
+
+    builder.addPart(seats[0], builder.addMesh(ball(0.4f, 3)), palette.mirror, moved({0, 0.95, 0}));
+    builder.addPart(seats[4], builder.addMesh(lathe(vase, 24)), palette.ivory);
+    builder.addPart(seats[5], builder.addMesh(ball(0.34f, 2)), palette.chalk, moved({0, 0.9, 0}));
+
+    const uint32_t spinning = builder.addNode({.translation = {0, 1.1, 0}}, seats[2]);
+    builder.turn(spinning, UP, -3);
+    const glm::dmat4 onItsCorner =
+        glm::rotate(glm::rotate(glm::dmat4(1), std::atan(std::sqrt(0.5)), {1, 0, 0}), PI / 4, {0, 0, 1});
+    builder.addPart(spinning, builder.addMesh(box), palette.chalk, onItsCorner);
+
+    const auto bob = [&](uint32_t seat, double from, double to) {
+        const uint32_t node = builder.addNode({}, seat);
         builder.translate(node, 4, [&](double phase) {
-            return glm::dvec3(0, low + (high - low) * (0.5 - 0.5 * std::cos(2 * PI * phase)), 0);
+            return (0.5 * (from + to) + 0.5 * (from - to) * std::cos(2 * PI * phase)) * UP;
         });
         return node;
     };
-    const uint32_t pole = builder.addMesh(bar), base = builder.addMesh(lathe(plinth, 24));
-    for (const int place : {1, 3}) builder.addPart(seat(place), pole, brass);
-    for (const int place : {0, 2, 5}) builder.addPart(seat(place), base, ivory);
-    builder.addPart(builder.addNode({.translation = {0, 0.95, 0}}, seat(0)), builder.addMesh(ball(0.4f, 3)), mirror);
-    builder.addPart(bob(1, 0.7, 1.7), builder.addMesh(ring(0.34f, 0.11f)), lacquer);
-    const uint32_t cube = builder.addNode({.translation = {0, 1.1, 0}}, seat(2));
-    builder.turn(cube, UP, -3);
-    const glm::dmat4 onItsCorner =
-        glm::rotate(glm::rotate(glm::dmat4(1), std::atan(std::sqrt(0.5)), {1, 0, 0}), PI / 4, {0, 0, 1});
-    builder.addPart(cube, builder.addMesh(box), chalk, onItsCorner);
-    builder.addPart(bob(3, 1.6, 0.8), builder.addMesh(ball(0.2f, 2)), ember);
-    builder.addPart(seat(4), builder.addMesh(lathe(vase, 24)), ivory);
-    builder.addPart(builder.addNode({.translation = {0, 0.9, 0}}, seat(5)), builder.addMesh(ball(0.34f, 2)), chalk);
+    builder.addPart(bob(seats[1], 0.7, 1.7), builder.addMesh(ring(0.34f, 0.11f)), palette.lacquer);
+    builder.addPart(bob(seats[3], 1.6, 0.8), builder.addMesh(ball(0.2f, 2)), palette.ember);
+}
 
-    // Bulbs under the eaves run against it; two more run around it, close to the ground.
+void addLamps(MotionBuilder& builder, const Palette& palette)
+{
+    // Bulbs under the eaves run against the carousel; two more run around it, close to the ground.
     const uint32_t garland = builder.addNode({}), runners = builder.addNode({});
     builder.turn(garland, UP, -1);
     builder.turn(runners, UP, -2);
     const uint32_t bulb = builder.addMesh(ball(0.09f, 1));
+    const uint32_t colors[] = {palette.red, palette.green, palette.blue};
     for (int i = 0; i < SECTORS; ++i)
-        builder.addPart(
-            garland, bulb, bulbs[i * 3 / SECTORS],
-            glm::translate(glm::dmat4(1), glm::dvec3(around(DISC + 0.1f, ROOF - 0.18f, double(i) / SECTORS))));
-    for (const int i : {0, 1})
-        builder.addPart(runners, bulb, bulbs[2 + i],
-                        glm::translate(glm::dmat4(1), glm::dvec3(around(DISC + 0.5f, 0.4f, i / 2.0))));
+        builder.addPart(garland, bulb, colors[i * 3 / SECTORS],
+                        moved(around(DISC + 0.1f, ROOF - 0.18f, double(i) / SECTORS)));
+    builder.addPart(runners, bulb, palette.blue, moved(around(DISC + 0.5f, 0.4f, 0)));
+    builder.addPart(runners, bulb, palette.warm, moved(around(DISC + 0.5f, 0.4f, 0.5)));
 
     // Two spotlights sweep the hall.
-    for (const double sign : {-1.0, 1.0}) {
+    for (const int sign : {-1, 1}) {
         const uint32_t mast = builder.addNode({.translation = {sign * 3.6, 4.8, -2.6}});
-        builder.turn(mast, UP, static_cast<int>(sign));
+        builder.turn(mast, UP, sign);
         const uint32_t head = builder.addNode({.rotation = glm::angleAxis(-PI / 3, glm::dvec3(1, 0, 0))}, mast);
         builder.addLight(head, {.name = "sweep",
                                 .kind = LightKind::Spot,
@@ -191,6 +209,19 @@ Scene makeCarousel()
                                 .innerConeAngle = glm::radians(14.0f),
                                 .outerConeAngle = glm::radians(24.0f)});
     }
+}
+
+} // namespace
+
+Scene makeCarousel()
+{
+    Scene scene;
+    scene.name = "carousel";
+    addHall(scene);
+    const Palette palette = addPalette(scene);
+    MotionBuilder builder(scene, PERIOD);
+    addBodies(builder, palette, addCarousel(builder, palette));
+    addLamps(builder, palette);
     builder.finish();
     scene.cameras.push_back(lookAt("visitor", {0.4, 1.8, 5.6}, {0, 1.45, 0}, 46.0));
     return scene;

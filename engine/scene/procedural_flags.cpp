@@ -4,8 +4,11 @@
 #include "engine/scene/motion_builder.h"
 #include "engine/scene/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -53,7 +56,7 @@ void addPole(Scene& scene, uint32_t material, glm::vec3 foot, float height)
 }
 
 // A cloth of 1.8 m x 1.2 m that hangs from the upper half of a pole, and sags away from it.
-Scene cloth()
+Scene hanging()
 {
     Scene shape;
     addSurface(shape, 0, {28, 14},
@@ -70,22 +73,10 @@ Scene strip(float length)
     return shape;
 }
 
-} // namespace
-
-Scene makeFlags()
+// A wave runs along each: the sum of two that stand, a quarter of their length apart.
+void addFlags(Scene& scene, MotionBuilder& builder, std::span<const uint32_t> cloths, uint32_t iron)
 {
-    Scene scene;
-    scene.name = "flags";
-    addStreet(scene);
-    MotionBuilder builder(scene, PERIOD);
-    const uint32_t iron = addMaterial(scene, glossy("iron", {0.12f, 0.12f, 0.13f}, 0.35f));
-    const uint32_t cloths[] = {addMaterial(scene, diffuse("linen", {0.78f, 0.75f, 0.70f})),
-                               addMaterial(scene, diffuse("saffron", {0.78f, 0.50f, 0.10f})),
-                               addMaterial(scene, diffuse("sky cloth", {0.30f, 0.52f, 0.74f})),
-                               addMaterial(scene, diffuse("rose cloth", {0.76f, 0.40f, 0.42f}))};
-
-    // Flags: a wave runs along them, the sum of two that stand, a quarter of their length apart.
-    const uint32_t flag = builder.addMesh(cloth());
+    const uint32_t flag = builder.addMesh(hanging());
     for (const double quarter : {0.0, 0.25})
         builder.addMorphTarget(flag, [&](const glm::dvec3& p) {
             const double wave = p.x / 1.3 + 0.25 * p.y - quarter;
@@ -104,15 +95,18 @@ Scene makeFlags()
             return std::vector<double>{std::cos(angle), std::sin(angle)};
         });
     }
+}
 
-    // A pennant: a chain of joints, each of which swings a little later than the one before.
+// A chain of joints, each of which swings a little later than the one before.
+void addPennant(Scene& scene, MotionBuilder& builder, uint32_t cloth, uint32_t iron)
+{
     constexpr int JOINTS = 9;
     constexpr double LENGTH = 4.0, LINK = LENGTH / JOINTS;
     const glm::vec3 mast(-2.6f, 0, 1.2f);
     addPole(scene, iron, mast, 1.75f);
     std::vector<uint32_t> joints = {builder.addNode({.translation = glm::dvec3(mast) + 1.4 * UP})};
     while (joints.size() < JOINTS) joints.push_back(builder.addNode({.translation = {LINK, 0, 0}}, joints.back()));
-    const uint32_t pennant = builder.addPart(joints[0], builder.addMesh(strip(LENGTH)), cloths[0]);
+    const uint32_t pennant = builder.addPart(joints[0], builder.addMesh(strip(LENGTH)), cloth);
     builder.bind(pennant, joints, [&](const glm::dvec3& p) {
         const double along = std::max(p.x / LINK - 0.5, 0.0); // joints: each wholly moves the middle of its link
         const auto joint = static_cast<uint32_t>(along);
@@ -125,6 +119,24 @@ Scene makeFlags()
             return glm::angleAxis(0.32 * std::sin(swing), UP) *
                    glm::angleAxis(0.08 * std::sin(2 * PI * phase - double(i)), glm::dvec3(0, 0, 1));
         });
+}
+
+} // namespace
+
+Scene makeFlags()
+{
+    Scene scene;
+    scene.name = "flags";
+    addStreet(scene);
+    MotionBuilder builder(scene, PERIOD);
+    const uint32_t iron = addMaterial(scene, glossy("iron", {0.12f, 0.12f, 0.13f}, 0.35f));
+    const uint32_t cloths[] = {addMaterial(scene, diffuse("linen", {0.78f, 0.75f, 0.70f})),
+                               addMaterial(scene, diffuse("saffron", {0.78f, 0.50f, 0.10f})),
+                               addMaterial(scene, diffuse("sky cloth", {0.30f, 0.52f, 0.74f})),
+                               addMaterial(scene, diffuse("rose cloth", {0.76f, 0.40f, 0.42f}))};
+
+    addFlags(scene, builder, cloths, iron);
+    addPennant(scene, builder, cloths[0], iron);
     builder.finish();
     scene.cameras.push_back(lookAt("street", {0, 1.8, 6.4}, {0, 2.1, 0}, 46.0));
     return scene;
