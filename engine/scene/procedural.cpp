@@ -14,6 +14,9 @@ std::vector<BuiltInScene> builtInScenes()
         {"cornell", "The Cornell box: one area light, two coloured walls, all Lambert.", makeCornell},
         {"lamps", "A terrace at night under hundreds of small coloured lamps: coloured direct light.", makeLamps},
         {"dim", "A room lit through its doorway by a white lamp around the corner: indirect light.", makeDim},
+        {"carousel", "A carousel that turns in a hall under colored lamps: bodies that keep their shape move.",
+         makeCarousel},
+        {"flags", "Flags that wave between colored lamps: bodies that change their shape move.", makeFlags},
         {"furnace", "The inside of a glowing sphere whose radiance is known: 1 - albedo^(bounces + 1).", makeFurnace},
     };
 }

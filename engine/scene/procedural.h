@@ -29,6 +29,12 @@ Scene makeLamps();
 // A room lit only through its doorway, from a white lamp around the corner: nearly all light is indirect.
 Scene makeDim();
 
+// A carousel in a hall, under lamps of nearly one color each. Rigid bodies, emitters and spotlights move; 8 s.
+Scene makeCarousel();
+
+// Flags and a pennant in front of a wall, strongly colored lamps on both sides of them. Deforming bodies move; 4 s.
+Scene makeFlags();
+
 // The inside of a closed Lambertian sphere (flat facets) that emits Le = 1 - rho everywhere: seen from inside, after at
 // most D scattering events, L = Le (1 + rho + ... + rho^D) = 1 - rho^(D+1) per channel, whatever the direction.
 Scene makeFurnace();

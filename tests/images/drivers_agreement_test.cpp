@@ -1,6 +1,6 @@
 // Two drivers of different makers, lavapipe and SwiftShader, make the same picture of every built-in scene with every
 // method. Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
-// few paths on which rounding decides a branch. By default two of the twenty, all with TRICHROME_TEST_DRIVERS=1
+// few paths on which rounding decides a branch. By default two of these cases, all with TRICHROME_TEST_DRIVERS=1
 // (ctest -R drivers); with TRICHROME_TEST_DRIVERS=ICD.json all of them on that driver in SwiftShader's place.
 
 #include <fmt/format.h>

@@ -63,7 +63,7 @@ TEST(BuiltInScenes, HaveUniqueNamesAndOneLineOfDescription)
         EXPECT_GT(description.size(), 20u);
         EXPECT_EQ(description.find('\n'), std::string::npos);
     }
-    EXPECT_EQ(names, (std::set<std::string>{"hall", "cornell", "lamps", "dim", "furnace"}));
+    EXPECT_EQ(names, (std::set<std::string>{"hall", "cornell", "lamps", "dim", "carousel", "flags", "furnace"}));
 }
 
 TEST(BuiltInScenes, AreSoundMeshes)
