@@ -71,6 +71,7 @@ class References
     // For the picture after so many frames. Null when stopped before it was made. Throws Error: the cache cannot be
     // written.
     const Reference* after(uint64_t frames);
+    const Precision& precision() const { return options_.precision; }
     const std::map<uint64_t, Reference>& made() const { return made_; }    // by frame; 0 where nothing moves
     const std::vector<std::string>& warnings() const { return warnings_; } // about the file, for the person
 

@@ -128,6 +128,31 @@ void ConvergeCommand::write(ConvergeReport& report, const passes::RaceStore& sto
     writeText(folder / "index.html", convergePage(report, plots));
 }
 
+// Before anything is measured. Where something moves, each measured frame has a reference of its own: once it is known
+// how long one takes, it is said what all will take, if that is worth a word.
+void traceReferences(passes::References& references, bool moving, uint64_t frames, Progress& progress,
+                     const std::function<bool()>& stop)
+{
+    constexpr double WORTH_A_WORD = 60; // s
+    const auto start = Clock::now();
+    const passes::Reference* first = references.after(frames);
+    if (!moving || !first) return;
+    std::vector<uint64_t> others;
+    for (uint64_t frame = 1; frame < frames; ++frame)
+        if (passes::isCheckpoint(frame, true)) others.push_back(frame);
+    const double each = secondsSince(start), left = each * double(others.size());
+    if (!first->fromCache && left > WORTH_A_WORD) {
+        progress.clear();
+        fmt::print(
+            stderr,
+            "Path tracing {} more references, one for each frame that is measured: about {:.0f} minutes, since the "
+            "first took {:.0f} s. --reference-error, now {}, says how precise they must be.\n",
+            others.size(), std::ceil(left / 60), each, references.precision().error);
+    }
+    for (const uint64_t frame : others)
+        if (!stop()) references.after(frame);
+}
+
 int ConvergeCommand::run()
 {
     passes::Settings wanted = settings.read();
@@ -185,7 +210,7 @@ int ConvergeCommand::run()
     for (const std::string& warning : references.warnings()) fmt::print(stderr, "Warning: {}\n", warning);
 
     auto written = Clock::now();
-    if (!report.moving || !report.repeats.empty()) references.after(limits.frames);
+    traceReferences(references, report.moving, limits.frames, progress, stop);
     while (report.repeats.size() < runs && !stop()) {
         const size_t index = report.repeats.size();
         passes::Repeat repeat = race.run(

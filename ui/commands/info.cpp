@@ -1,8 +1,10 @@
 // info [SCENE]: devices; the built-in scenes; or what a scene holds and what is compiled for it.
 
+#include "engine/base/clock.h"
 #include "engine/base/json.h"
 #include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/scene_tables.h"
 #include "passes/renderer.h"
 #include "passes/variant.h"
 #include "ui/cli/device_options.h"
@@ -149,7 +151,36 @@ Json motionJson(const scene::Motion& motion)
             {"host_bytes", motion.bytes()}};
 }
 
-Json sceneJson(const SceneSource& source, const scene::Scene& world, const passes::RenderStats& stats)
+// What a frame takes on the host while the scene plays (--fps), in the middle of its longest animation: to pose it, and
+// to make tables of it, which then go to the device. Null: nothing can play.
+Json playingJson(scene::Scene world, uint64_t maxTableBytes)
+{
+    std::vector<uint32_t> playable;
+    double length = 0;
+    for (uint32_t i = 0; world.motion && i < world.motion->animations.size(); ++i) {
+        const scene::Animation& animation = world.motion->animations[i];
+        if (!animation.fault.empty()) continue;
+        playable.push_back(i);
+        length = std::max(length, animation.seconds);
+    }
+    if (playable.empty()) return nullptr;
+    scene::MovingTables poses(world, maxTableBytes / 2);
+    const auto start = Clock::now();
+    scene::pose(world, playable, length / 2);
+    const double posed = secondsSince(start);
+    const scene::SceneTables tables = poses.at(world);
+    const double all = secondsSince(start);
+    const auto bytes = [](uint64_t rows) { return rows * sizeof(glm::uvec4); };
+    const scene::TableSizes& most = poses.most();
+    return {{"pose_seconds", posed},
+            {"tables_seconds", all - posed},
+            {"upload_bytes", bytes(tables.bvh.nodes.size() + tables.bvh.triangles.size() + tables.attributes.size() +
+                                   tables.sceneData.size())},
+            {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.triangles + most.attributes + most.sceneData)}};
+}
+
+Json sceneJson(const SceneSource& source, const scene::Scene& world, const passes::RenderStats& stats,
+               uint64_t maxTableBytes)
 {
     Json pose = Json::object();
     for (const auto& [name, value] : source.toText()) pose[name] = value;
@@ -183,6 +214,7 @@ Json sceneJson(const SceneSource& source, const scene::Scene& world, const passe
             {"memory_bytes", stats.memoryBytes},
             {"variant", variantJson(stats.variant)},
             {"motion", world.motion ? motionJson(*world.motion) : Json(nullptr)},
+            {"playing", playingJson(world, maxTableBytes)},
             {"warnings", world.warnings}};
 }
 
@@ -225,6 +257,12 @@ void printScene(const Json& scene, const passes::Settings& settings)
         if (count != 0) lights += fmt::format("{}{} {}", lights.empty() ? "" : ", ", count.get<uint64_t>(), kind);
     fmt::print("Lights: {}\nCameras: {}\n", lights, jsonText(scene["cameras"]));
     if (!scene["motion"].is_null()) printMotion(scene["motion"]);
+    if (const Json& playing = scene["playing"]; !playing.is_null())
+        fmt::print(
+            "While it plays: {:.1f} ms a frame to pose it, {:.1f} ms for its tables, {} of them to the device, {} for "
+            "two worlds there\n",
+            1000 * playing["pose_seconds"].get<double>(), 1000 * playing["tables_seconds"].get<double>(),
+            megabytes(playing["upload_bytes"]), megabytes(playing["worlds_bytes"]));
     fmt::print("BVH: {} nodes, {}, {:.1f} bytes per triangle, SAH cost {:.2f}, built in {:.2f} s\n",
                bvh["nodes"].get<uint64_t>(), megabytes(bvh["bytes"]), bvh["bytes_per_triangle"].get<double>(),
                bvh["sah_cost"].get<double>(), bvh["seconds"].get<double>());
@@ -268,7 +306,7 @@ int InfoCommand::run() const
         progress.clear();
         facts["device"] = gpu.adapter().name;
         facts["tuning"] = tuningJson(gpu.adapter().tuning);
-        facts["scene"] = sceneJson(scene, world, renderer.stats());
+        facts["scene"] = sceneJson(scene, world, renderer.stats(), gpu.limits().tableBytes);
         printScene(facts["scene"], chosen);
         fmt::print("Device: {}, tuned {}\n", gpu.adapter().name, gpu::toText(gpu.adapter().tuning));
     }

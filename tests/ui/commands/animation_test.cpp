@@ -152,4 +152,7 @@ TEST_F(AnimationOptions, InfoTellsWhatMoves)
     EXPECT_TRUE(motion["animations"][1].contains("fault"));
     EXPECT_EQ(motion["rigid_parts"], 1);
     EXPECT_GT(motion["host_bytes"], 0);
+    EXPECT_NE(told.find("\nWhile it plays: "), std::string::npos) << told;
+    EXPECT_GT(facts["playing"]["upload_bytes"], 0);
+    EXPECT_GE(facts["playing"]["worlds_bytes"], 2 * facts["playing"]["upload_bytes"].get<uint64_t>());
 }
