@@ -27,7 +27,7 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
         poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes / 2, bvhProgress, set);
         tables = std::make_unique<scene::GpuScene>(gpu, *poses);
         poses->forgetTexels();
-        take(poses->rest());
+        take(poses->last());
         show(0, scene);
     } else {
         const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, bvhProgress, set);
@@ -49,8 +49,8 @@ SceneOnDevice::SceneOnDevice(const SceneOnDevice& other)
 
 void SceneOnDevice::show(uint32_t world, const scene::Scene& posed)
 {
-    const scene::SceneTables pose = poses->at(posed);
-    tables->write(device, world, pose);
+    const scene::SceneTables& pose = poses->at(posed);
+    tables->write(device, world, pose, poses->changes());
     bvh = pose.bvh.stats;
     lights = pose.lights;
 }

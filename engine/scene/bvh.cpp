@@ -281,10 +281,11 @@ void requireValid(const BvhInput& input)
     CHECK_LT(input.triangles.size(), size_t{shared::BVH_ALPHA_FLAG});
 }
 
-Bvh tablesOf(const WideTree& tree, const NodeLayout& layout, std::span<const TrianglePair> pairs, const BvhInput& input)
+Bvh tablesOf(const WideTree& tree, const NodeLayout& layout, float magnitude, std::span<const TrianglePair> pairs,
+             const BvhInput& input)
 {
     Bvh bvh;
-    bvh.nodes = encodeNodes(tree, layout);
+    bvh.nodes = encodeNodes(tree, layout, magnitude);
     bvh.triangles = encodeTriangles(tree, pairs, input);
     bvh.stats.nodes = tree.nodes.size();
     bvh.stats.triangleRecords = tree.pairs.size();
@@ -322,19 +323,38 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     requireFits("tree nodes", layout.rows, shared::BVH_NODE_STRIDE,
                 std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES, shared::BVH_NODE_STRIDE)));
 
-    Bvh bvh = tablesOf(tree, layout, pairs, input);
+    Bvh bvh = tablesOf(tree, layout, magnitudeOf(tree), pairs, input);
     bvh.stats.skippedTriangles = input.triangles.size() - usable.size();
     bvh.stats.buildSeconds = secondsSince(start);
     if (input.progress) input.progress(1.0);
     return bvh;
 }
 
+std::vector<RowRange> rangesOf(std::span<const uint32_t> items, uint32_t stride)
+{
+    constexpr uint32_t GAP = 64; // rows between two of them that are rather copied, too
+    std::vector<RowRange> ranges;
+    for (const uint32_t item : items) {
+        const uint32_t first = item * stride;
+        if (ranges.empty() || first > ranges.back().end + GAP) ranges.push_back({first, first});
+        ranges.back().end = std::max(ranges.back().end, first + stride);
+    }
+    return ranges;
+}
+
 struct MovingBvh::Tree {
+    std::vector<uint8_t> moves; // by triangle
     std::vector<TrianglePair> pairs;
     WideTree wide;
     NodeLayout layout;
     double builtCost = 0;
+    float magnitude = 0; // with which it is encoded
     Most most;
+    // What follows the triangles that move.
+    std::vector<uint32_t> movingPairs, movingRecords;
+    std::vector<uint32_t> movingNodes; // children before parents
+    Bvh tables;
+    Changes changes;
 
     void pair(const BvhInput& input)
     {
@@ -347,16 +367,60 @@ struct MovingBvh::Tree {
         wide = collapse(reinsert(buildBinaryTree(input, pairs, false)));
         layout = layOut(wide);
         builtCost = sahCost(wide);
+        findWhatMoves();
+    }
+    void findWhatMoves()
+    {
+        movingPairs.clear();
+        std::vector<bool> moving(pairs.size());
+        for (uint32_t i = 0; i < pairs.size(); ++i) {
+            moving[i] = moves[pairs[i].first] || (pairs[i].second != NONE && moves[pairs[i].second]);
+            if (moving[i]) movingPairs.push_back(i);
+        }
+        movingRecords.clear();
+        for (uint32_t i = 0; i < wide.pairs.size(); ++i)
+            if (moving[wide.pairs[i]]) movingRecords.push_back(i);
+        std::vector<bool> nodes(wide.nodes.size());
+        movingNodes.clear();
+        for (auto n = uint32_t(wide.nodes.size()); n-- > 0;) { // children follow their parents
+            for (const WideChild& child : wide.nodes[n].slots) {
+                if (child.kind == WideChild::Kind::Node) nodes[n] = nodes[n] || nodes[child.first];
+                for (uint32_t i = 0; child.kind == WideChild::Kind::Leaf && i < child.count; ++i)
+                    nodes[n] = nodes[n] || moving[wide.pairs[child.first + i]];
+            }
+            if (nodes[n]) movingNodes.push_back(n);
+        }
+        std::vector<uint32_t> rows;
+        for (const uint32_t n : movingNodes) rows.push_back(layout.row[n]);
+        std::ranges::sort(rows);
+        changes.nodes = rangesOf(rows, shared::BVH_NODE_STRIDE);
+        changes.triangles = rangesOf(movingRecords, shared::BVH_RECORD_STRIDE);
+    }
+    // Everything, with room for boxes that grow somewhat.
+    void encodeAll(const BvhInput& input)
+    {
+        magnitude = 1.25f * magnitudeOf(wide);
+        tables = tablesOf(wide, layout, magnitude, pairs, input);
+        ++changes.version;
+    }
+    void encodeMoving(const BvhInput& input)
+    {
+        for (const uint32_t n : movingNodes) encodeNode(wide, layout, magnitude, n, tables.nodes);
+        for (const uint32_t record : movingRecords) encodeRecord(wide, pairs, input, record, tables.triangles);
+        tables.stats.sahCost = sahCost(wide);
     }
     uint32_t nodeRows() const { return layout.rows * shared::BVH_NODE_STRIDE; }
 };
 
-MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes) : tree_(std::make_unique<Tree>())
+MovingBvh::MovingBvh(const BvhInput& rest, std::vector<uint8_t> moves, uint64_t maxTableBytes)
+    : tree_(std::make_unique<Tree>())
 {
     requireValid(rest);
+    CHECK_EQ(moves.size(), rest.triangles.size());
     const uint64_t count = std::max<uint64_t>(rest.triangles.size(), 1); // of pairs, where no edge stays common
     requireFits("triangles", count, shared::BVH_RECORD_STRIDE, maxTableBytes);
     Tree& tree = *tree_;
+    tree.moves = std::move(moves);
     tree.pair(rest);
     tree.build(rest);
     const uint64_t nodes = 2 * uint64_t{tree.layout.rows} * count / std::max<size_t>(tree.pairs.size(), 1);
@@ -365,34 +429,46 @@ MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes) : tree_(std::
     tree.most = {.nodeRows = uint32_t(nodes) * shared::BVH_NODE_STRIDE,
                  .recordRows = uint32_t(count) * shared::BVH_RECORD_STRIDE,
                  .depth = std::min(tree.wide.levels + 4, shared::BVH_STACK_SIZE)};
+    tree.encodeAll(rest);
 }
 
 MovingBvh::MovingBvh(const MovingBvh& other) : tree_(std::make_unique<Tree>(*other.tree_)) {}
 
 MovingBvh::~MovingBvh() = default;
 
-Bvh MovingBvh::at(const BvhInput& input)
+const Bvh& MovingBvh::at(const BvhInput& input)
 {
     constexpr double WORN = 1.5;
     const auto start = Clock::now();
+    Tree& tree = *tree_;
     const bool torn =
-        !std::ranges::all_of(tree_->pairs, [&](const TrianglePair& p) { return shareVertices(input, p); });
-    if (!torn) refit(tree_->wide, tree_->pairs, input);
-    if (torn || sahCost(tree_->wide) > WORN * tree_->builtCost) {
-        Tree fresh{.pairs = tree_->pairs, .most = tree_->most};
+        !std::ranges::all_of(tree.movingPairs, [&](uint32_t i) { return shareVertices(input, tree.pairs[i]); });
+    if (!torn) refit(tree.wide, tree.movingNodes, tree.pairs, input);
+    const bool worn = !torn && sahCost(tree.wide) > WORN * tree.builtCost;
+    bool isNew = false;
+    if (torn || worn) {
+        Tree fresh = tree;
         if (torn) fresh.pair(input);
         fresh.build(input);
-        const bool hasRoom = fresh.nodeRows() <= fresh.most.nodeRows && fresh.wide.levels <= fresh.most.depth;
-        if (hasRoom)
-            *tree_ = std::move(fresh);
+        isNew = fresh.nodeRows() <= fresh.most.nodeRows && fresh.wide.levels <= fresh.most.depth;
+        if (isNew)
+            tree = std::move(fresh);
         else if (torn)
             throw Error("A pose of the scene needs a deeper tree of boxes than it has room for.");
         else
-            tree_->builtCost = sahCost(tree_->wide); // go on with this one
+            tree.builtCost = sahCost(tree.wide); // go on with this one
     }
-    Bvh bvh = tablesOf(tree_->wide, tree_->layout, tree_->pairs, input);
-    bvh.stats.buildSeconds = secondsSince(start);
-    return bvh;
+    if (isNew || magnitudeOf(tree.wide) > tree.magnitude)
+        tree.encodeAll(input);
+    else
+        tree.encodeMoving(input);
+    tree.tables.stats.buildSeconds = secondsSince(start);
+    return tree.tables;
+}
+
+const MovingBvh::Changes& MovingBvh::changes() const
+{
+    return tree_->changes;
 }
 
 const MovingBvh::Most& MovingBvh::most() const

@@ -42,20 +42,35 @@ struct BvhInput {
 // Throws Error when the tree cannot fit `maxTableBytes`, for each of the two tables.
 Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes);
 
+// Rows of a table, from `first` up to `end`.
+struct RowRange {
+    uint32_t first = 0, end = 0;
+};
+
+// The rows of items of so many rows each, in ascending order; together where they are near each other.
+std::vector<RowRange> rangesOf(std::span<const uint32_t> items, uint32_t stride);
+
 // Of triangles that move. Its boxes are refitted to where they are; it is built anew once that has made it half as
 // expensive again as it was. Which hits traversal finds does not depend on it. Triangles without area stay in it, for
 // they may have some later: nothing meets them.
 class MovingBvh
 {
   public:
-    // Throws Error like buildBvh().
-    MovingBvh(const BvhInput& rest, uint64_t maxTableBytes);
+    // `moves`: 0 or 1 for each triangle; the others are where they are at rest in all poses. Throws Error like
+    // buildBvh().
+    MovingBvh(const BvhInput& rest, std::vector<uint8_t> moves, uint64_t maxTableBytes);
     MovingBvh(const MovingBvh& other);
     MovingBvh& operator=(const MovingBvh&) = delete;
     ~MovingBvh();
 
-    // With the triangles, counted as at rest, where `input` has them.
-    Bvh at(const BvhInput& input);
+    // With the triangles, counted as at rest, where `input` has them. Until the next call.
+    const Bvh& at(const BvhInput& input);
+    // While the version stays, what at() gives differs from pose to pose in these rows alone.
+    struct Changes {
+        uint64_t version = 0;
+        std::vector<RowRange> nodes, triangles;
+    };
+    const Changes& changes() const;
     // The most of a pose: rows of both tables, and BvhStats::depth.
     struct Most {
         uint32_t nodeRows = 0, recordRows = 0, depth = 0;

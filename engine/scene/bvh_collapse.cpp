@@ -213,7 +213,7 @@ WideTree collapse(const BinaryTree& tree)
     return Collapser(tree).run();
 }
 
-void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input)
+void refit(WideTree& tree, std::span<const uint32_t> nodes, std::span<const TrianglePair> pairs, const BvhInput& input)
 {
     const auto boxOfNode = [&](uint32_t node) {
         Box box;
@@ -221,7 +221,7 @@ void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& 
             if (child.kind != WideChild::Kind::Empty) box.extend(child.box);
         return box;
     };
-    for (size_t n = tree.nodes.size(); n-- > 0;) { // children follow their parents
+    for (const uint32_t n : nodes) {
         for (WideChild& child : tree.nodes[n].slots) {
             if (child.kind == WideChild::Kind::Node) child.box = boxOfNode(child.first);
             if (child.kind != WideChild::Kind::Leaf) continue;

@@ -83,7 +83,7 @@ std::array<glm::uvec4, shared::BVH_NODE_STRIDE> encode(const WideNode& node, uin
 
 } // namespace
 
-std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout)
+float magnitudeOf(const WideTree& tree)
 {
     float magnitude = 0;
     for (const WideChild& child : tree.nodes[0].slots) {
@@ -91,36 +91,47 @@ std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layo
         const glm::vec3 largest = glm::max(glm::abs(child.box.lower), glm::abs(child.box.upper));
         magnitude = std::max({magnitude, largest.x, largest.y, largest.z});
     }
+    return magnitude;
+}
+
+void encodeNode(const WideTree& tree, const NodeLayout& layout, float magnitude, uint32_t node,
+                std::span<glm::uvec4> table)
+{
+    const auto words = encode(tree.nodes[node], layout.first[node], static_cast<float>(BOX_MARGIN * magnitude));
+    std::ranges::copy(words, table.begin() + std::ptrdiff_t(layout.row[node] * shared::BVH_NODE_STRIDE));
+}
+
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout, float magnitude)
+{
     std::vector<glm::uvec4> table(size_t{layout.rows} * shared::BVH_NODE_STRIDE);
-    for (size_t i = 0; i < tree.nodes.size(); ++i) {
-        const auto words = encode(tree.nodes[i], layout.first[i], float(BOX_MARGIN * magnitude));
-        std::ranges::copy(words, table.begin() + std::ptrdiff_t(layout.row[i] * shared::BVH_NODE_STRIDE));
-    }
+    for (uint32_t i = 0; i < tree.nodes.size(); ++i) encodeNode(tree, layout, magnitude, i, table);
     return table;
+}
+
+void encodeRecord(const WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input, uint32_t record,
+                  std::span<glm::uvec4> table)
+{
+    auto row = table.begin() + std::ptrdiff_t(size_t{record} * shared::BVH_RECORD_STRIDE);
+    const auto add = [&](uint32_t triangle, uint32_t corner, uint32_t tag) {
+        const glm::vec3 v = input.positions[input.triangles[triangle].vertices[corner % 3]];
+        *row++ = {std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z), tag};
+    };
+    const TrianglePair& pair = pairs[tree.pairs[record]];
+    const bool alpha = !input.needsAlphaTest.empty() && input.needsAlphaTest[pair.first] != 0;
+    add(pair.first, pair.firstTurn, pair.first | (alpha ? shared::BVH_ALPHA_FLAG : 0u));
+    add(pair.first, pair.firstTurn + 1, pair.second == NONE ? 0u : pair.second);
+    add(pair.first, pair.firstTurn + 2, pair.firstTurn);
+    if (pair.second == NONE)
+        add(pair.first, pair.firstTurn + 1, 0u);
+    else
+        add(pair.second, pair.secondTurn, pair.secondTurn);
 }
 
 std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, std::span<const TrianglePair> pairs,
                                         const BvhInput& input)
 {
-    if (tree.pairs.empty()) return std::vector<glm::uvec4>(shared::BVH_RECORD_STRIDE); // tables are never empty
-    std::vector<glm::uvec4> table;
-    table.reserve(tree.pairs.size() * shared::BVH_RECORD_STRIDE);
-    const auto add = [&](uint32_t triangle, uint32_t corner, uint32_t tag) {
-        const glm::vec3 v = input.positions[input.triangles[triangle].vertices[corner % 3]];
-        table.emplace_back(std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z),
-                           tag);
-    };
-    for (const uint32_t index : tree.pairs) {
-        const TrianglePair& pair = pairs[index];
-        const bool alpha = !input.needsAlphaTest.empty() && input.needsAlphaTest[pair.first] != 0;
-        add(pair.first, pair.firstTurn, pair.first | (alpha ? shared::BVH_ALPHA_FLAG : 0u));
-        add(pair.first, pair.firstTurn + 1, pair.second == NONE ? 0u : pair.second);
-        add(pair.first, pair.firstTurn + 2, pair.firstTurn);
-        if (pair.second == NONE)
-            add(pair.first, pair.firstTurn + 1, 0u);
-        else
-            add(pair.second, pair.secondTurn, pair.secondTurn);
-    }
+    std::vector<glm::uvec4> table(std::max<size_t>(tree.pairs.size(), 1) * shared::BVH_RECORD_STRIDE); // never empty
+    for (uint32_t record = 0; record < tree.pairs.size(); ++record) encodeRecord(tree, pairs, input, record, table);
     return table;
 }
 

@@ -95,8 +95,8 @@ BinaryTree reinsert(BinaryTree tree);
 // heuristic.
 WideTree collapse(const BinaryTree& tree);
 
-// Fits all boxes to where the pairs' triangles are.
-void refit(WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input);
+// Fits the boxes of these nodes, children before parents, to where the pairs' triangles are.
+void refit(WideTree& tree, std::span<const uint32_t> nodes, std::span<const TrianglePair> pairs, const BvhInput& input);
 
 // Expected cost of a ray through the root's box.
 double sahCost(const WideTree& tree);
@@ -113,11 +113,18 @@ NodeLayout layOut(const WideTree& tree);
 // Bit 24+s: slot s is a node; bit 3s+k: slot s is a leaf with a k-th pair.
 uint32_t masksOf(const WideNode& node);
 
-// The table "Nodes".
-std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout);
+// The largest coordinate of the tree's boxes: by a part of it all boxes grow, so that rounding loses no hit.
+float magnitudeOf(const WideTree& tree);
+
+// The table "Nodes"; `magnitude`: at least the tree's.
+std::vector<glm::uvec4> encodeNodes(const WideTree& tree, const NodeLayout& layout, float magnitude);
+void encodeNode(const WideTree& tree, const NodeLayout& layout, float magnitude, uint32_t node,
+                std::span<glm::uvec4> table);
 
 // The table "Triangles".
 std::vector<glm::uvec4> encodeTriangles(const WideTree& tree, std::span<const TrianglePair> pairs,
                                         const BvhInput& input);
+void encodeRecord(const WideTree& tree, std::span<const TrianglePair> pairs, const BvhInput& input, uint32_t record,
+                  std::span<glm::uvec4> table);
 
 } // namespace scene

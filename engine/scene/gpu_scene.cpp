@@ -38,14 +38,20 @@ TableSizes sizesOf(const SceneTables& tables)
             .depth = tables.bvh.stats.depth};
 }
 
-// Links of a tree that lies behind other nodes and records.
-std::vector<glm::uvec4> moved(std::vector<glm::uvec4> nodes, uint32_t firstNode, uint32_t firstRecord)
+// Whole nodes of a tree that lies behind other nodes and records.
+std::vector<glm::uvec4> moved(std::span<const glm::uvec4> nodes, uint32_t firstNode, uint32_t firstRecord)
 {
-    for (size_t i = 1; i < nodes.size(); i += shared::BVH_NODE_STRIDE) {
-        nodes[i].y += firstNode << 8;
-        nodes[i].z += firstRecord;
+    std::vector<glm::uvec4> copy(nodes.begin(), nodes.end());
+    for (size_t i = 1; i < copy.size(); i += shared::BVH_NODE_STRIDE) {
+        copy[i].y += firstNode << 8;
+        copy[i].z += firstRecord;
     }
-    return nodes;
+    return copy;
+}
+
+std::span<const glm::uvec4> rowsOf(const std::vector<glm::uvec4>& table, const RowRange& range)
+{
+    return std::span(table).subspan(range.first, range.end - range.first);
 }
 
 } // namespace
@@ -79,15 +85,15 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables, const TableSi
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
     : GpuScene(device, tables, sizesOf(tables), 1, nullptr)
 {
-    write(device, 0, tables);
+    write(device, 0, tables, {});
 }
 
 GpuScene::GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other)
-    : GpuScene(device, tables.rest(), tables.most(), 2, other ? other->texels_ : nullptr)
+    : GpuScene(device, tables.last(), tables.most(), 2, other ? other->texels_ : nullptr)
 {
 }
 
-void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose)
+void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose, const TableChanges& changes)
 {
     const uint32_t node = world * room_.nodes, record = world * room_.triangles, data = world * room_.sceneData;
     CHECK(pose.bvh.nodes.size() <= room_.nodes && pose.bvh.triangles.size() <= room_.triangles);
@@ -98,11 +104,28 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     uniform.rootNode = node / shared::BVH_NODE_STRIDE;
     uniform.attributeOffset = world * room_.attributes;
     for (uint32_t* offset : {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset}) *offset += data;
-    const uint32_t firstData = uniform.materialOffset; // of what this pose has to itself
-    writeRows(device, nodes_, moved(pose.bvh.nodes, uniform.rootNode, record / shared::BVH_RECORD_STRIDE), node);
-    writeRows(device, triangles_, pose.bvh.triangles, record);
-    writeRows(device, attributes_, pose.attributes, uniform.attributeOffset);
-    writeRows(device, sceneData_, pose.sceneData, firstData);
+
+    const bool all = versions_[world] != changes.tree.version; // or else what is there differs in some rows only
+    versions_[world] = changes.tree.version;
+    const auto eachRange = [&](const std::vector<RowRange>& ranges, const std::vector<glm::uvec4>& table,
+                               auto&& visit) {
+        if (all)
+            visit(RowRange{0, uint32_t(table.size())});
+        else
+            std::ranges::for_each(ranges, visit);
+    };
+    eachRange(changes.tree.nodes, pose.bvh.nodes, [&](const RowRange& range) {
+        writeRows(device, nodes_,
+                  moved(rowsOf(pose.bvh.nodes, range), uniform.rootNode, record / shared::BVH_RECORD_STRIDE),
+                  node + range.first);
+    });
+    eachRange(changes.tree.triangles, pose.bvh.triangles, [&](const RowRange& range) {
+        writeRows(device, triangles_, rowsOf(pose.bvh.triangles, range), record + range.first);
+    });
+    eachRange(changes.attributes, pose.attributes, [&](const RowRange& range) {
+        writeRows(device, attributes_, rowsOf(pose.attributes, range), uniform.attributeOffset + range.first);
+    });
+    writeRows(device, sceneData_, pose.sceneData, pose.environment.size() + data);
     device.queue().write(uniform_, std::as_bytes(std::span(worlds_)));
 }
 

@@ -3,6 +3,8 @@
 // there as two worlds, one after the other in each table (shaders/shared/scene.h).
 
 #include <array>
+#include <memory>
+#include <optional>
 
 #include "engine/gpu/gpu.h"
 #include "engine/scene/scene_tables.h"
@@ -30,7 +32,7 @@ class GpuScene
     GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other = nullptr);
 
     // From the next submission on; `world`: 0 or 1.
-    void write(gpu::Device& device, uint32_t world, const SceneTables& pose);
+    void write(gpu::Device& device, uint32_t world, const SceneTables& pose, const TableChanges& changes);
 
     gpu::BindGroup bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const;
     const TraversalStack& stack() const { return stack_; }
@@ -43,6 +45,7 @@ class GpuScene
 
     TableSizes room_; // of a world
     std::array<shared::SceneUniform, 2> worlds_ = {};
+    std::array<std::optional<uint64_t>, 2> versions_; // of the trees that are there
     std::shared_ptr<const gpu::Buffer> texels_;
     gpu::Buffer nodes_, triangles_, attributes_, sceneData_, uniform_;
     TraversalStack stack_;

@@ -3,7 +3,9 @@
 #include "engine/base/check.h"
 #include "engine/image/image.h"
 #include "engine/scene/alias_table.h"
+#include "engine/scene/motion.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -62,33 +64,49 @@ double largestLight(const Scene& scene, double lengthScale)
     return value;
 }
 
+// Scaled. In float as the shaders have it: what has no area there cannot be sampled there, and has 0 here.
+double areaOf(const Scene& scene, const std::vector<glm::vec3>& positions, uint32_t triangle)
+{
+    const auto corner = [&](size_t i) { return positions[scene.triangles[triangle].vertices[i]]; };
+    const float twice = glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    return twice > 0 && std::isfinite(twice) ? 0.5 * double(twice) : 0;
+}
+
 struct Candidate {
     uint32_t kind = 0;
     uint32_t index = 0;
     double power = 0;
 };
 
-// Emissive triangles of positive area. A textured emitter counts with its image's mean: the pick probability may be
-// rough, the estimate stays unbiased.
+// Emissive triangles of positive area; with `moves`, of any, and those that an animation may make emit.
+std::vector<uint32_t> emittersOf(const Scene& scene, const std::vector<glm::vec3>& positions,
+                                 const std::vector<double>& emissiveMeans, bool moves)
+{
+    std::vector<bool> painted(scene.materials.size());
+    if (moves)
+        for (const Motion::Paint& paint : scene.motion->paints) painted[paint.material] = true;
+    std::vector<bool> emits;
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        const bool shines = painted[i] || largest(glm::dvec3(material.emission)) > 0;
+        emits.push_back(!material.unlit && shines && emissiveMeans[i] > 0);
+    }
+    std::vector<uint32_t> emitters;
+    for (uint32_t t = 0; t < scene.triangles.size(); ++t)
+        if (emits[scene.triangles[t].material] && (moves || areaOf(scene, positions, t) > 0)) emitters.push_back(t);
+    return emitters;
+}
+
+// A textured emitter counts with its image's mean: the pick probability may be rough, the estimate stays unbiased.
 void addTriangles(const Scene& scene, const std::vector<glm::vec3>& positions, const LightTables& tables,
                   std::vector<Candidate>& candidates)
 {
-    std::vector<double> exitance(scene.materials.size());
-    for (size_t i = 0; i < exitance.size(); ++i) {
-        const Material& material = scene.materials[i];
-        if (material.unlit) continue;
-        exitance[i] = pi * tables.radianceScale * largest(glm::dvec3(material.emission)) *
-                      (material.doubleSided ? 2 : 1) * tables.emissiveMeans[i];
-    }
-    for (size_t t = 0; t < scene.triangles.size(); ++t) {
-        const Triangle& triangle = scene.triangles[t];
-        if (exitance[triangle.material] <= 0) continue;
-        const auto corner = [&](size_t i) { return positions[triangle.vertices[i]]; };
-        // In float as the shaders have it: what has no area there cannot be sampled there.
-        const float twiceArea = glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
-        if (!(twiceArea > 0) || !std::isfinite(twiceArea)) continue;
-        candidates.push_back(
-            {shared::LIGHT_TRIANGLE, uint32_t(t), exitance[triangle.material] * 0.5 * double(twiceArea)});
+    for (const uint32_t t : tables.emitters) {
+        const uint32_t index = scene.triangles[t].material;
+        const Material& material = scene.materials[index];
+        const double exitance = pi * tables.radianceScale * largest(glm::dvec3(material.emission)) *
+                                (material.doubleSided ? 2 : 1) * tables.emissiveMeans[index];
+        candidates.push_back({shared::LIGHT_TRIANGLE, t, exitance * areaOf(scene, positions, t)});
     }
 }
 
@@ -162,42 +180,62 @@ void addEnvironment(const Environment& environment, LightTables& tables)
 
 } // namespace
 
-LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
-                            double radius, const LightTables* rest)
+namespace
 {
-    LightTables tables;
-    if (rest) {
-        tables.radianceScale = rest->radianceScale;
-        tables.environmentPower = rest->environmentPower;
-        tables.emissiveMeans = rest->emissiveMeans;
-    } else {
-        const double value = largestLight(scene, lengthScale);
-        if (value > 0) tables.radianceScale = std::exp2(-std::round(std::log2(value)));
-        tables.emissiveMeans = emissiveMeansOf(scene);
-        addEnvironment(scene.environment, tables);
-    }
-    tables.counts.environments = scene.environment.width > 0;
 
+// What differs from pose to pose.
+void pickLights(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius,
+                LightTables& tables)
+{
     std::vector<Candidate> candidates;
     addTriangles(scene, positions, tables, candidates);
-    tables.counts.emissiveTriangles = candidates.size();
+    tables.counts.emissiveTriangles =
+        uint64_t(std::ranges::count_if(candidates, [](const Candidate& c) { return c.power > 0; }));
     addPunctual(scene, lengthScale, radius, tables, candidates);
+    tables.counts.environments = scene.environment.width > 0;
     const double environmentPower = tables.environmentPower * std::max(radius, 0.5) * std::max(radius, 0.5);
     if (environmentPower > 0) candidates.push_back({shared::LIGHT_ENVIRONMENT, 0, environmentPower});
 
     std::vector<double> powers;
     for (const Candidate& candidate : candidates) powers.push_back(candidate.power);
     const std::vector<AliasEntry> aliases = buildAliasTable(powers);
-    tables.lightOfTriangle.assign(scene.triangles.size(), shared::NO_INDEX);
     for (size_t i = 0; i < candidates.size(); ++i) {
         const Candidate& candidate = candidates[i];
         CHECK(candidate.index < 1u << 30);
         tables.lights.emplace_back(std::bit_cast<uint32_t>(aliases[i].threshold), aliases[i].alias,
                                    std::bit_cast<uint32_t>(aliases[i].probability),
                                    candidate.kind | candidate.index << 2);
-        if (candidate.kind == shared::LIGHT_TRIANGLE) tables.lightOfTriangle[candidate.index] = uint32_t(i);
         if (candidate.kind == shared::LIGHT_ENVIRONMENT) tables.environmentPick = aliases[i].probability;
     }
+    tables.shine = std::ranges::any_of(powers, [](double power) { return power > 0; });
+}
+
+} // namespace
+
+LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
+                            double radius, bool moves)
+{
+    LightTables tables;
+    const double value = largestLight(scene, lengthScale);
+    if (value > 0) tables.radianceScale = std::exp2(-std::round(std::log2(value)));
+    tables.emissiveMeans = emissiveMeansOf(scene);
+    addEnvironment(scene.environment, tables);
+    tables.emitters = emittersOf(scene, positions, tables.emissiveMeans, moves);
+    tables.lightOfTriangle.assign(scene.triangles.size(), shared::NO_INDEX);
+    for (size_t i = 0; i < tables.emitters.size(); ++i) tables.lightOfTriangle[tables.emitters[i]] = uint32_t(i);
+    pickLights(scene, positions, lengthScale, radius, tables);
+    return tables;
+}
+
+LightTables makeLightTables(const Scene& posed, const std::vector<glm::vec3>& positions, double lengthScale,
+                            double radius, const LightTables& rest)
+{
+    LightTables tables;
+    tables.radianceScale = rest.radianceScale;
+    tables.environmentPower = rest.environmentPower;
+    tables.emissiveMeans = rest.emissiveMeans;
+    tables.emitters = rest.emitters;
+    pickLights(posed, positions, lengthScale, radius, tables);
     return tables;
 }
 

@@ -17,14 +17,20 @@ struct LightTables {
     std::vector<glm::uvec4> environmentAliases; // one row for two texels
     double environmentPower = 0;                // of a scene of radius 1
     float environmentPick = 0;
+    std::vector<uint32_t> emitters;        // triangles that are lights, the first of all
     std::vector<uint32_t> lightOfTriangle; // NO_INDEX: not sampled by next-event estimation
     std::vector<double> emissiveMeans;     // by material: of its emissive texture's largest channel; 1: it has none
+    bool shine = false;                    // whether any of the lights does
     LightCounts counts;
 };
 
-// `positions` are scaled by lengthScale; `radius` is of the scaled scene. `rest`: tables of another pose of the scene;
-// what all have in common is kept as it is there, the environment's rows are left out.
+// `positions` are scaled by lengthScale; `radius` is of the scaled scene. With `moves`, what may shine in another pose
+// is a light, too, of power 0.
 LightTables makeLightTables(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale,
-                            double radius, const LightTables* rest = nullptr);
+                            double radius, bool moves = false);
+
+// Of another pose, without what all have in common: scale, rows of the environment, which triangles are lights.
+LightTables makeLightTables(const Scene& posed, const std::vector<glm::vec3>& positions, double lengthScale,
+                            double radius, const LightTables& rest);
 
 } // namespace scene

@@ -104,39 +104,33 @@ T attributeOr(const std::vector<T>& values, uint32_t vertex, const T& missing)
     return values.empty() ? missing : values[vertex];
 }
 
-std::vector<glm::uvec4> packAttributes(const Scene& scene, const std::vector<glm::vec3>& positions, uint32_t rows,
-                                       const std::vector<uint32_t>& lightOfTriangle)
+// The record of a triangle, `rows` long.
+void packAttributes(const Scene& scene, const std::vector<glm::vec3>& positions, uint32_t light, uint32_t rows,
+                    size_t index, std::vector<glm::uvec4>& table)
 {
-    std::vector<glm::uvec4> table;
-    table.reserve(scene.triangles.size() * rows);
-    for (size_t t = 0; t < scene.triangles.size(); ++t) {
-        const Triangle& triangle = scene.triangles[t];
-        const auto& [a, b, c] = triangle.vertices;
-        glm::uvec3 tangents;
-        for (int i = 0; i < 3; ++i)
-            tangents[i] =
-                encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
-        table.push_back(row(positions[a], triangle.material));
-        table.push_back(row(positions[b], lightOfTriangle[t]));
-        table.push_back(row(positions[c], bits(clearance(positions[a], positions[b], positions[c]))));
-        table.emplace_back(octahedralEncode(scene.normals[a]), octahedralEncode(scene.normals[b]),
-                           octahedralEncode(scene.normals[c]), tangents.z);
-        if (rows == shared::ATTRIBUTE_ROWS_BARE) continue;
-        const auto uv = [&](const std::vector<glm::vec2>& set, uint32_t vertex) {
-            const glm::vec2 value = attributeOr(set, vertex, glm::vec2(0));
-            return glm::uvec2(bits(value.x), bits(value.y));
-        };
-        table.emplace_back(uv(scene.uv0, a), uv(scene.uv0, b));
-        table.emplace_back(uv(scene.uv0, c), glm::uvec2(tangents));
-        if (rows == shared::ATTRIBUTE_ROWS_UV) continue;
-        const auto color = [&](uint32_t vertex) {
-            return encodeColor(attributeOr(scene.colors, vertex, glm::vec4(1)));
-        };
-        table.emplace_back(uv(scene.uv1, a), uv(scene.uv1, b));
-        table.emplace_back(uv(scene.uv1, c), color(a));
-        table.emplace_back(color(b), color(c));
-    }
-    return table;
+    const Triangle& triangle = scene.triangles[index];
+    const auto& [a, b, c] = triangle.vertices;
+    glm::uvec4* record = &table[index * rows];
+    glm::uvec3 tangents;
+    for (int i = 0; i < 3; ++i)
+        tangents[i] = encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
+    record[0] = row(positions[a], triangle.material);
+    record[1] = row(positions[b], light);
+    record[2] = row(positions[c], bits(clearance(positions[a], positions[b], positions[c])));
+    record[3] = {octahedralEncode(scene.normals[a]), octahedralEncode(scene.normals[b]),
+                 octahedralEncode(scene.normals[c]), tangents.z};
+    if (rows == shared::ATTRIBUTE_ROWS_BARE) return;
+    const auto uv = [&](const std::vector<glm::vec2>& set, uint32_t vertex) {
+        const glm::vec2 value = attributeOr(set, vertex, glm::vec2(0));
+        return glm::uvec2(bits(value.x), bits(value.y));
+    };
+    record[4] = {uv(scene.uv0, a), uv(scene.uv0, b)};
+    record[5] = {uv(scene.uv0, c), glm::uvec2(tangents)};
+    if (rows == shared::ATTRIBUTE_ROWS_UV) return;
+    const auto color = [&](uint32_t vertex) { return encodeColor(attributeOr(scene.colors, vertex, glm::vec4(1))); };
+    record[6] = {uv(scene.uv1, a), uv(scene.uv1, b)};
+    record[7] = {uv(scene.uv1, c), color(a)};
+    record[8] = {color(b), color(c)};
 }
 
 void requireFits(const char* what, uint64_t rows, uint64_t maxTableBytes)
@@ -146,10 +140,15 @@ void requireFits(const char* what, uint64_t rows, uint64_t maxTableBytes)
                     rows * sizeof(glm::uvec4), maxTableBytes);
 }
 
+glm::vec3 scaled(const glm::vec3& position, double scale)
+{
+    return glm::vec3(glm::dvec3(position) * scale);
+}
+
 std::vector<glm::vec3> scaled(const std::vector<glm::vec3>& positions, double scale)
 {
     std::vector<glm::vec3> list(positions.size());
-    for (size_t i = 0; i < list.size(); ++i) list[i] = glm::vec3(glm::dvec3(positions[i]) * scale);
+    for (size_t i = 0; i < list.size(); ++i) list[i] = scaled(positions[i], scale);
     return list;
 }
 
@@ -180,15 +179,13 @@ SceneFeatures featuresOf(const Scene& scene, SceneFeatures features, const Light
     return features;
 }
 
-// What differs from pose to pose, but for the tree. The tables' scales and features are known.
-void fill(SceneTables& tables, const Scene& scene, const std::vector<glm::vec3>& positions, double radius,
-          const LightTables& lights, const std::vector<glm::uvec4>& materials, uint64_t maxTableBytes)
+// Materials and lights: the rows of SceneData that differ from pose to pose.
+void fillSceneData(SceneTables& tables, const LightTables& lights, const std::vector<glm::uvec4>& materials,
+                   double radius)
 {
     tables.lights = lights.counts;
+    tables.sceneData.clear();
     shared::SceneUniform& uniform = tables.uniform;
-    uniform.attributeRows = attributeRows(tables.features);
-    requireFits("triangles", scene.triangles.size() * uniform.attributeRows, maxTableBytes);
-    tables.attributes = packAttributes(scene, positions, uniform.attributeRows, lights.lightOfTriangle);
     const auto append = [&](const std::vector<glm::uvec4>& rows) {
         const uint64_t offset = tables.environment.size() + tables.sceneData.size();
         tables.sceneData.insert(tables.sceneData.end(), rows.begin(), rows.end());
@@ -197,10 +194,9 @@ void fill(SceneTables& tables, const Scene& scene, const std::vector<glm::vec3>&
     uniform.materialOffset = append(materials);
     uniform.lightOffset = append(lights.lights);
     uniform.punctualOffset = append(lights.punctual);
-    uniform.lightCount = uint32_t(lights.lights.size());
+    uniform.lightCount = lights.shine ? uint32_t(lights.lights.size()) : 0;
     uniform.environmentPick = lights.environmentPick;
     uniform.radius = float(radius * tables.lengthScale);
-    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
 }
 
 // All but the tree.
@@ -223,7 +219,14 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
     tables.uniform.environmentWidth = black ? 1 : scene.environment.width;
     tables.uniform.environmentHeight = black ? 1 : scene.environment.height;
     requireFits("textures", tables.texels.size(), maxTableBytes);
-    fill(tables, scene, positions, radius, lights, materials.rows, maxTableBytes);
+    const uint32_t rows = attributeRows(tables.features);
+    tables.uniform.attributeRows = rows;
+    requireFits("triangles", scene.triangles.size() * rows, maxTableBytes);
+    tables.attributes.resize(scene.triangles.size() * rows);
+    for (size_t t = 0; t < scene.triangles.size(); ++t)
+        packAttributes(scene, positions, lights.lightOfTriangle[t], rows, t, tables.attributes);
+    fillSceneData(tables, lights, materials.rows, radius);
+    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
     return tables;
 }
 
@@ -248,84 +251,133 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
 
 struct MovingTables::Kept {
     uint64_t maxTableBytes;
-    LightTables lights;
+    std::vector<glm::vec3> positions; // scaled, of the last pose
+    LightTables lights;               // at rest
     std::vector<glm::uvec4> materials;
-    SceneTables rest;
+    SceneTables tables; // of the last pose
     std::vector<uint8_t> needsAlphaTest;
+    std::vector<uint32_t> movingTriangles, movingVertices;
+    double stillSquaredRadius = 0; // of the vertices that do not move
     std::optional<MovingBvh> bvh;
     TableSizes most;
+    TableChanges changes;
+
+    BvhInput bvhInput(const Scene& scene) const
+    {
+        return {.positions = positions, .triangles = scene.triangles, .needsAlphaTest = needsAlphaTest};
+    }
+    void findWhatMoves(const Scene& scene);
+    double radiusOf(const Scene& scene) const;
 };
+
+// Those of the parts; all of a scene that has none and moves nevertheless.
+void MovingTables::Kept::findWhatMoves(const Scene& scene)
+{
+    std::vector<uint8_t> triangles(scene.triangles.size(), scene.motion->parts.empty());
+    for (const Motion::Part& part : scene.motion->parts)
+        std::fill_n(triangles.begin() + part.firstTriangle, scene.motion->meshes[part.mesh].triangles.size(), 1);
+    std::vector<uint8_t> vertices(scene.positions.size());
+    for (uint32_t t = 0; t < triangles.size(); ++t) {
+        if (!triangles[t]) continue;
+        movingTriangles.push_back(t);
+        for (const uint32_t v : scene.triangles[t].vertices) vertices[v] = 1;
+    }
+    for (const Motion::Part& part : scene.motion->parts) // also what no triangle names at rest
+        std::fill_n(vertices.begin() + part.firstVertex, scene.motion->meshes[part.mesh].vertices.count, 1);
+    for (uint32_t v = 0; v < vertices.size(); ++v)
+        if (vertices[v]) movingVertices.push_back(v);
+    for (uint32_t t = 0; t < triangles.size(); ++t) {
+        for (const uint32_t v : scene.triangles[t].vertices) {
+            if (triangles[t]) continue;
+            const glm::dvec3 p(scene.positions[v]);
+            stillSquaredRadius = std::max(stillSquaredRadius, glm::dot(p, p));
+        }
+    }
+}
+
+double MovingTables::Kept::radiusOf(const Scene& scene) const
+{
+    double squared = stillSquaredRadius;
+    for (const uint32_t t : movingTriangles) {
+        for (const uint32_t v : scene.triangles[t].vertices) {
+            const glm::dvec3 p(scene.positions[v]);
+            squared = std::max(squared, glm::dot(p, p));
+        }
+    }
+    return std::sqrt(squared);
+}
 
 MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
                            FeatureSet featureSet)
     : kept_(std::make_unique<Kept>(Kept{.maxTableBytes = maxTableBytes}))
 {
     CHECK(rest.motion);
-    const double radius = radiusOf(rest);
-    const double lengthScale = powerOfTwoScale(radius);
-    const std::vector<glm::vec3> positions = scaled(rest.positions, lengthScale);
-    kept_->lights = makeLightTables(rest, positions, lengthScale, radius * lengthScale);
-    MaterialTables materials = makeMaterialTables(rest, kept_->lights.radianceScale, true);
-    kept_->materials = materials.rows;
-    kept_->rest = tablesOf(rest, positions, lengthScale, radius, kept_->lights, std::move(materials), true,
+    Kept& kept = *kept_;
+    kept.findWhatMoves(rest);
+    const double radius = kept.radiusOf(rest), lengthScale = powerOfTwoScale(radius);
+    kept.positions = scaled(rest.positions, lengthScale);
+    kept.lights = makeLightTables(rest, kept.positions, lengthScale, radius * lengthScale, true);
+    MaterialTables materials = makeMaterialTables(rest, kept.lights.radianceScale, true);
+    kept.materials = materials.rows;
+    kept.tables = tablesOf(rest, kept.positions, lengthScale, radius, kept.lights, std::move(materials), true,
                            maxTableBytes, featureSet);
-    kept_->lights.environment.clear();
-    kept_->lights.environmentAliases.clear();
-    kept_->needsAlphaTest = alphaTests(rest, kept_->rest.features);
-    kept_->bvh.emplace(BvhInput{.positions = positions,
-                                .triangles = rest.triangles,
-                                .needsAlphaTest = kept_->needsAlphaTest,
-                                .progress = bvhProgress},
-                       maxTableBytes);
+    kept.lights.environment.clear();
+    kept.lights.environmentAliases.clear();
+    kept.needsAlphaTest = alphaTests(rest, kept.tables.features);
+    std::vector<uint8_t> moves(rest.triangles.size());
+    for (const uint32_t t : kept.movingTriangles) moves[t] = 1;
+    BvhInput input = kept.bvhInput(rest);
+    input.progress = bvhProgress;
+    kept.bvh.emplace(input, std::move(moves), maxTableBytes);
+    kept.tables.bvh = kept.bvh->at(input);
 
-    std::vector<bool> emits;
-    for (const Material& material : rest.materials) emits.push_back(material.emission != glm::vec3(0));
-    for (const Motion::Paint& paint : rest.motion->paints) emits[paint.material] = true;
-    const auto emitters = std::ranges::count_if(rest.triangles, [&](const Triangle& t) { return emits[t.material]; });
-    const MovingBvh::Most& tree = kept_->bvh->most();
-    kept_->most = {.nodes = tree.nodeRows,
-                   .triangles = tree.recordRows,
-                   .attributes = uint32_t(kept_->rest.attributes.size()),
-                   .sceneData = uint32_t(kept_->materials.size() + kept_->lights.punctual.size() + size_t(emitters) +
-                                         rest.lights.size() + 1),
-                   .depth = tree.depth};
-    requireFits("materials and lights", kept_->rest.environment.size() + kept_->most.sceneData, maxTableBytes);
+    const MovingBvh::Most& tree = kept.bvh->most();
+    const size_t lights = kept.lights.emitters.size() + rest.lights.size() + 1;
+    kept.most = {.nodes = tree.nodeRows,
+                 .triangles = tree.recordRows,
+                 .attributes = uint32_t(kept.tables.attributes.size()),
+                 .sceneData = uint32_t(kept.materials.size() + kept.lights.punctual.size() + lights),
+                 .depth = tree.depth};
+    requireFits("materials and lights", kept.tables.environment.size() + kept.most.sceneData, maxTableBytes);
+    kept.changes.attributes = rangesOf(kept.movingTriangles, kept.tables.uniform.attributeRows);
+    kept.changes.tree = kept.bvh->changes();
 }
 
 MovingTables::MovingTables(const MovingTables& other) : kept_(std::make_unique<Kept>(*other.kept_)) {}
 
 MovingTables::~MovingTables() = default;
 
-const SceneTables& MovingTables::rest() const
-{
-    return kept_->rest;
-}
-
 void MovingTables::forgetTexels()
 {
-    kept_->rest.texels.clear();
+    kept_->tables.texels = {};
 }
 
-SceneTables MovingTables::at(const Scene& posed)
+const SceneTables& MovingTables::at(const Scene& posed)
 {
-    const SceneTables& rest = kept_->rest;
-    CHECK_EQ(posed.triangles.size() * rest.uniform.attributeRows, rest.attributes.size());
-    SceneTables tables{.uniform = rest.uniform,
-                       .features = rest.features,
-                       .lengthScale = rest.lengthScale,
-                       .radianceScale = rest.radianceScale};
-    const double radius = radiusOf(posed);
-    const std::vector<glm::vec3> positions = scaled(posed.positions, rest.lengthScale);
+    Kept& kept = *kept_;
+    SceneTables& tables = kept.tables;
+    const uint32_t rows = tables.uniform.attributeRows;
+    CHECK_EQ(posed.triangles.size() * rows, tables.attributes.size());
+    const double radius = kept.radiusOf(posed);
+    for (const uint32_t v : kept.movingVertices) kept.positions[v] = scaled(posed.positions[v], tables.lengthScale);
+    for (const uint32_t t : kept.movingTriangles)
+        packAttributes(posed, kept.positions, kept.lights.lightOfTriangle[t], rows, t, tables.attributes);
     const LightTables lights =
-        makeLightTables(posed, positions, rest.lengthScale, radius * rest.lengthScale, &kept_->lights);
-    fill(tables, posed, positions, radius, lights, repaint(kept_->materials, posed, rest.radianceScale),
-         kept_->maxTableBytes);
-    tables.uniform.materialOffset += uint32_t(rest.environment.size());
-    tables.uniform.lightOffset += uint32_t(rest.environment.size());
-    tables.uniform.punctualOffset += uint32_t(rest.environment.size());
-    tables.bvh =
-        kept_->bvh->at({.positions = positions, .triangles = posed.triangles, .needsAlphaTest = kept_->needsAlphaTest});
+        makeLightTables(posed, kept.positions, tables.lengthScale, radius * tables.lengthScale, kept.lights);
+    fillSceneData(tables, lights, repaint(kept.materials, posed, tables.radianceScale), radius);
+    tables.bvh = kept.bvh->at(kept.bvhInput(posed));
+    kept.changes.tree = kept.bvh->changes();
     return tables;
+}
+
+const SceneTables& MovingTables::last() const
+{
+    return kept_->tables;
+}
+
+const TableChanges& MovingTables::changes() const
+{
+    return kept_->changes;
 }
 
 const TableSizes& MovingTables::most() const

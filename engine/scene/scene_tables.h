@@ -62,6 +62,12 @@ struct TableSizes {
     uint32_t depth = 0;
 };
 
+// While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData.
+struct TableChanges {
+    MovingBvh::Changes tree;
+    std::vector<RowRange> attributes;
+};
+
 // The tables of a scene that moves, pose by pose. In all of them lengths and light are scaled as at rest, and what the
 // shaders provide for is what any pose may need.
 class MovingTables
@@ -74,11 +80,11 @@ class MovingTables
     MovingTables& operator=(const MovingTables&) = delete;
     ~MovingTables();
 
-    // At rest, without the tree: at() makes that of the first pose, too.
-    const SceneTables& rest() const;
-    void forgetTexels(); // of rest(), once they are on the device
-    // Of what pose() has made of the scene, without texels and environment, which are those of rest().
-    SceneTables at(const Scene& posed);
+    // Of what pose() has made of the scene; until the next call. Texels and environment are those of rest in all poses.
+    const SceneTables& at(const Scene& posed);
+    const SceneTables& last() const; // of the last pose; first, of rest
+    void forgetTexels();             // once they are on the device
+    const TableChanges& changes() const;
     const TableSizes& most() const;
 
   private:

@@ -168,13 +168,19 @@ Json playingJson(scene::Scene world, uint64_t maxTableBytes)
     const auto start = Clock::now();
     scene::pose(world, playable, length / 2);
     const double posed = secondsSince(start);
-    const scene::SceneTables tables = poses.at(world);
+    const scene::SceneTables& tables = poses.at(world);
     const double all = secondsSince(start);
     const auto bytes = [](uint64_t rows) { return rows * sizeof(glm::uvec4); };
     const scene::TableSizes& most = poses.most();
+    const scene::TableChanges& changes = poses.changes();
+    const auto rows = [](const std::vector<scene::RowRange>& ranges) {
+        uint64_t sum = 0;
+        for (const scene::RowRange& range : ranges) sum += range.end - range.first;
+        return sum;
+    };
     return {{"pose_seconds", posed},
             {"tables_seconds", all - posed},
-            {"upload_bytes", bytes(tables.bvh.nodes.size() + tables.bvh.triangles.size() + tables.attributes.size() +
+            {"upload_bytes", bytes(rows(changes.tree.nodes) + rows(changes.tree.triangles) + rows(changes.attributes) +
                                    tables.sceneData.size())},
             {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.triangles + most.attributes + most.sceneData)}};
 }
