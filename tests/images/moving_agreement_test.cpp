@@ -46,6 +46,7 @@ std::vector<RestirCase> movingCases()
             {"LampMoves", RgbRestir, Hybrid, Both, false, 8},
             {"LampChanges", RgbRestir, Hybrid, Both, false, 8, 600, 5},
             {"LampChanges", RestirPt, Replay, Temporal, false, 64, 300, 6},
+            {"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 1500, 5},
             {"LightsWander", RgbRestir, Hybrid, Both, false, 8, 900},
             {"PaintDries", RgbRestir, Hybrid, Both, false, 8, 300},
             {"MirrorMoves", RgbRestir, Hybrid, Both, false, 8},
@@ -53,7 +54,7 @@ std::vector<RestirCase> movingCases()
             {"PanesSlide", RgbRestir, Hybrid, Both, false, 8, 300},
             {"BumpsMove", RestirPt, Hybrid, Both, false, 8},
             {"OrthographicBall", RgbRestir, Hybrid, Both, true, 8},
-            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 900},
+            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 1200},
             {"RoomRebuilds", RestirPt, Reconnection, Temporal, true, 8, 600},
             {"RoomRebuilds", GroupedRestir, Replay, Both, false, 8, 450},
         };
@@ -65,7 +66,7 @@ std::vector<RestirCase> movingCases()
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 3u), {8u, 6u}, {64u, 5u}})
                         for (const char* scene : {"RoomRebuilds", "WallStretches"})
-                            cases.push_back({scene, method, shift, reuse, moves, maxConfidence, 900, frames});
+                            cases.push_back({scene, method, shift, reuse, moves, maxConfidence, 1500, frames});
     return cases;
 }
 
@@ -94,7 +95,7 @@ void PrintTo(const MovingError& error, std::ostream* os)
 
 const MovingError ERRORS[] = {
     {"PreviousWorldForgotten", {"LampChanges", RgbRestir, Hybrid, Temporal, false, 64, 200, 5}},
-    {"StaleSuffix", {"LampChanges", RgbRestir, Hybrid, Both, false, 64, 400, 5}},
+    {"StaleSuffix", {"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 500, 5}},
     {"StretchingForgotten", {"WallStretches", RgbRestir, Hybrid, Temporal, false, 64, 300}},
 };
 

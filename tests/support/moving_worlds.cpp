@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -144,6 +145,16 @@ Scene lampChanges(uint32_t frame) // color and power, by a factor of 10 and to n
     scene::addQuad(scene, wall, {-1.5f, 0.1f, -1}, {0.5f, 0, 0.2f}, {0, 1.5f, 0});
     return scene;
 }
+Scene ceilingLit(uint32_t frame) // all light has come by way of a ceiling, from a lamp that turns up and down
+{
+    Scene scene = testScene("Lambert");
+    scene.environment = {};
+    moveMaterial(scene, LAMP, glm::rotate(glm::translate(I, {0, 4.6f, 0}), glm::pi<float>(), {1, 0, 0}));
+    scene.materials[LAMP].emission = glm::vec3(30, 20, 25) * (frame % 2 ? 1.0f : 4.0f);
+    const uint32_t ceiling = scene::addMaterial(scene, scene::diffuse("ceiling", {0.8f, 0.9f, 0.7f}));
+    scene::addQuad(scene, ceiling, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4});
+    return moving(std::move(scene), {LAMP});
+}
 Scene lightsWander(uint32_t frame) // point, spot and directional
 {
     Scene scene = moving(testScene("SeveralLights"));
@@ -239,23 +250,12 @@ void hide(scene::Scene& scene, size_t firstTriangle, size_t endTriangle)
 std::vector<MovingWorld> movingWorlds()
 {
     return {
-        {"BallRolls", ballRolls},
-        {"BallJumps", ballJumps},
-        {"BallParks", ballParks},
-        {"BallVanishes", ballVanishes},
-        {"BallGrows", ballGrows},
-        {"WallStretches", wallStretches},
-        {"BallMirrored", ballMirrored},
-        {"BallWobbles", ballWobbles},
-        {"LampMoves", lampMoves},
-        {"LampChanges", lampChanges},
-        {"LightsWander", lightsWander, 2},
-        {"PaintDries", paintDries},
-        {"MirrorMoves", mirrorMoves},
-        {"GlassMoves", glassMoves, 5},
-        {"PanesSlide", panesSlide, 2},
-        {"BumpsMove", bumpsMove, 2},
-        {"OrthographicBall", orthographicBall, 2},
+        {"BallRolls", ballRolls},          {"BallJumps", ballJumps},     {"BallParks", ballParks},
+        {"BallVanishes", ballVanishes},    {"BallGrows", ballGrows},     {"WallStretches", wallStretches},
+        {"BallMirrored", ballMirrored},    {"BallWobbles", ballWobbles}, {"LampMoves", lampMoves},
+        {"LampChanges", lampChanges},      {"CeilingLit", ceilingLit},   {"LightsWander", lightsWander, 2},
+        {"PaintDries", paintDries},        {"MirrorMoves", mirrorMoves}, {"GlassMoves", glassMoves, 5},
+        {"PanesSlide", panesSlide, 2},     {"BumpsMove", bumpsMove, 2},  {"OrthographicBall", orthographicBall, 2},
         {"RoomRebuilds", roomRebuilds, 8},
     };
 }

@@ -83,7 +83,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     if (expected.tiles.tiles.empty()) {
         scene::Scene last = sceneAt ? sceneAt(lastFrame) : world; // as the last frame sees it
         last.cameras[0] = cameraAt(lastFrame);
-        expected = renderFrames(device, last, settings, PT_FRAMES);
+        expected = renderFrames(device, last, settings, (sceneAt ? 4 : 1) * PT_FRAMES);
     }
 
     settings.seed = 1000;
