@@ -333,23 +333,31 @@ struct MovingBvh::Tree {
     std::vector<TrianglePair> pairs;
     WideTree wide;
     NodeLayout layout;
-    double builtCost = 0;
+    double builtCost = 0, buildSeconds = 0;
     Most most;
 
-    void pair(const BvhInput& input)
+    void build(const BvhInput& input, std::span<const TrianglePair> posed)
     {
-        std::vector<uint32_t> all(input.triangles.size());
-        std::iota(all.begin(), all.end(), 0u);
-        pairs = pairTriangles(input, all, Edges::OfVertices);
-    }
-    void build(const BvhInput& input)
-    {
-        wide = collapse(reinsert(buildBinaryTree(input, pairs, false)));
+        const auto start = Clock::now();
+        wide = collapse(reinsert(buildBinaryTree(input, posed, false)));
         layout = layOut(wide);
         builtCost = sahCost(wide);
+        buildSeconds = secondsSince(start);
     }
     uint32_t nodeRows() const { return layout.rows * shared::BVH_NODE_STRIDE; }
 };
+
+namespace
+{
+
+std::vector<TrianglePair> pairsByVertices(const BvhInput& input)
+{
+    std::vector<uint32_t> all(input.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return pairTriangles(input, all, Edges::OfVertices);
+}
+
+} // namespace
 
 MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes) : tree_(std::make_unique<Tree>())
 {
@@ -357,14 +365,15 @@ MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes) : tree_(std::
     const uint64_t count = std::max<uint64_t>(rest.triangles.size(), 1); // of pairs, where no edge stays common
     requireFits("triangles", count, shared::BVH_RECORD_STRIDE, maxTableBytes);
     Tree& tree = *tree_;
-    tree.pair(rest);
-    tree.build(rest);
+    tree.pairs = pairsByVertices(rest);
+    tree.build(rest, tree.pairs);
     const uint64_t nodes = 2 * uint64_t{tree.layout.rows} * count / std::max<size_t>(tree.pairs.size(), 1);
     requireFits("tree nodes", nodes, shared::BVH_NODE_STRIDE,
                 std::min(maxTableBytes, bytesOf(shared::BVH_MAX_NODES / 2, shared::BVH_NODE_STRIDE))); // of two worlds
     tree.most = {.nodeRows = uint32_t(nodes) * shared::BVH_NODE_STRIDE,
                  .recordRows = uint32_t(count) * shared::BVH_RECORD_STRIDE,
                  .depth = std::min(tree.wide.levels + 4, shared::BVH_STACK_SIZE)};
+    if (rest.progress) rest.progress(1.0);
 }
 
 MovingBvh::MovingBvh(const MovingBvh& other) : tree_(std::make_unique<Tree>(*other.tree_)) {}
@@ -374,14 +383,13 @@ MovingBvh::~MovingBvh() = default;
 Bvh MovingBvh::at(const BvhInput& input)
 {
     constexpr double WORN = 1.5;
-    const auto start = Clock::now();
-    const bool torn =
-        !std::ranges::all_of(tree_->pairs, [&](const TrianglePair& p) { return shareVertices(input, p); });
-    if (!torn) refit(tree_->wide, tree_->pairs, input);
+    std::vector<TrianglePair> posed = tree_->pairs;
+    const bool torn = !std::ranges::all_of(posed, [&](TrianglePair& pair) { return follow(pair, input); });
+    if (!torn) refit(tree_->wide, posed, input);
     if (torn || sahCost(tree_->wide) > WORN * tree_->builtCost) {
         Tree fresh{.pairs = tree_->pairs, .most = tree_->most};
-        if (torn) fresh.pair(input);
-        fresh.build(input);
+        if (torn) posed = fresh.pairs = pairsByVertices(input);
+        fresh.build(input, posed);
         const bool hasRoom = fresh.nodeRows() <= fresh.most.nodeRows && fresh.wide.levels <= fresh.most.depth;
         if (hasRoom)
             *tree_ = std::move(fresh);
@@ -390,8 +398,8 @@ Bvh MovingBvh::at(const BvhInput& input)
         else
             tree_->builtCost = sahCost(tree_->wide); // go on with this one
     }
-    Bvh bvh = tablesOf(tree_->wide, tree_->layout, tree_->pairs, input);
-    bvh.stats.buildSeconds = secondsSince(start);
+    Bvh bvh = tablesOf(tree_->wide, tree_->layout, posed, input);
+    bvh.stats.buildSeconds = tree_->buildSeconds;
     return bvh;
 }
 

@@ -182,12 +182,10 @@ SceneFeatures featuresOf(const Scene& scene, SceneFeatures features, const Light
 
 // What differs from pose to pose, but for the tree. The tables' scales and features are known.
 void fill(SceneTables& tables, const Scene& scene, const std::vector<glm::vec3>& positions, double radius,
-          const LightTables& lights, const std::vector<glm::uvec4>& materials, uint64_t maxTableBytes)
+          const LightTables& lights, const std::vector<glm::uvec4>& materials)
 {
     tables.lights = lights.counts;
     shared::SceneUniform& uniform = tables.uniform;
-    uniform.attributeRows = attributeRows(tables.features);
-    requireFits("triangles", scene.triangles.size() * uniform.attributeRows, maxTableBytes);
     tables.attributes = packAttributes(scene, positions, uniform.attributeRows, lights.lightOfTriangle);
     const auto append = [&](const std::vector<glm::uvec4>& rows) {
         const uint64_t offset = tables.environment.size() + tables.sceneData.size();
@@ -200,10 +198,9 @@ void fill(SceneTables& tables, const Scene& scene, const std::vector<glm::vec3>&
     uniform.lightCount = uint32_t(lights.lights.size());
     uniform.environmentPick = lights.environmentPick;
     uniform.radius = float(radius * tables.lengthScale);
-    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
 }
 
-// All but the tree.
+// All but the tree. With `moves`, triangles are there twice on the device.
 SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius,
                      const LightTables& lights, MaterialTables materials, bool moves, uint64_t maxTableBytes,
                      FeatureSet featureSet)
@@ -222,8 +219,10 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
                               lights.environmentAliases.end());
     tables.uniform.environmentWidth = black ? 1 : scene.environment.width;
     tables.uniform.environmentHeight = black ? 1 : scene.environment.height;
+    tables.uniform.attributeRows = attributeRows(tables.features);
     requireFits("textures", tables.texels.size(), maxTableBytes);
-    fill(tables, scene, positions, radius, lights, materials.rows, maxTableBytes);
+    requireFits("triangles", (moves ? 2 : 1) * scene.triangles.size() * tables.uniform.attributeRows, maxTableBytes);
+    fill(tables, scene, positions, radius, lights, materials.rows);
     return tables;
 }
 
@@ -238,6 +237,7 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     const LightTables lights = makeLightTables(scene, positions, lengthScale, radius * lengthScale);
     SceneTables tables = tablesOf(scene, positions, lengthScale, radius, lights,
                                   makeMaterialTables(scene, lights.radianceScale), false, maxTableBytes, featureSet);
+    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
     tables.bvh = buildBvh({.positions = positions,
                            .triangles = scene.triangles,
                            .needsAlphaTest = alphaTests(scene, tables.features),
@@ -247,7 +247,6 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
 }
 
 struct MovingTables::Kept {
-    uint64_t maxTableBytes;
     LightTables lights;
     std::vector<glm::uvec4> materials;
     SceneTables rest;
@@ -258,7 +257,7 @@ struct MovingTables::Kept {
 
 MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
                            FeatureSet featureSet)
-    : kept_(std::make_unique<Kept>(Kept{.maxTableBytes = maxTableBytes}))
+    : kept_(std::make_unique<Kept>())
 {
     CHECK(rest.motion);
     const double radius = radiusOf(rest);
@@ -276,7 +275,7 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
                                 .triangles = rest.triangles,
                                 .needsAlphaTest = kept_->needsAlphaTest,
                                 .progress = bvhProgress},
-                       maxTableBytes);
+                       maxTableBytes / 2);
 
     std::vector<bool> emits;
     for (const Material& material : rest.materials) emits.push_back(material.emission != glm::vec3(0));
@@ -289,7 +288,8 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
                    .sceneData = uint32_t(kept_->materials.size() + kept_->lights.punctual.size() + size_t(emitters) +
                                          rest.lights.size() + 1),
                    .depth = tree.depth};
-    requireFits("materials and lights", kept_->rest.environment.size() + kept_->most.sceneData, maxTableBytes);
+    requireFits("materials and lights", kept_->rest.environment.size() + 2 * uint64_t{kept_->most.sceneData},
+                maxTableBytes);
 }
 
 MovingTables::MovingTables(const MovingTables& other) : kept_(std::make_unique<Kept>(*other.kept_)) {}
@@ -318,8 +318,7 @@ SceneTables MovingTables::at(const Scene& posed)
     const std::vector<glm::vec3> positions = scaled(posed.positions, rest.lengthScale);
     const LightTables lights =
         makeLightTables(posed, positions, rest.lengthScale, radius * rest.lengthScale, &kept_->lights);
-    fill(tables, posed, positions, radius, lights, repaint(kept_->materials, posed, rest.radianceScale),
-         kept_->maxTableBytes);
+    fill(tables, posed, positions, radius, lights, repaint(kept_->materials, posed, rest.radianceScale));
     tables.uniform.materialOffset += uint32_t(rest.environment.size());
     tables.uniform.lightOffset += uint32_t(rest.environment.size());
     tables.uniform.punctualOffset += uint32_t(rest.environment.size());
