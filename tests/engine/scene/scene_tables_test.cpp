@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/scene/motion.h"
 #include "engine/scene/shapes.h"
+#include "shaders/shared/bvh.h"
 #include "tests/support/moving_worlds.h"
 #include "tests/support/test_scenes.h"
 
