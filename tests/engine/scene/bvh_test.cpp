@@ -682,6 +682,31 @@ TEST(MovingBvh, WithoutRoomForABetterTreeGoesOnWithTheOldOne)
     EXPECT_EQ(shapeOf(bvh.at(inputOf(rest))), shapeOf(flat));
 }
 
+// Pairs that came apart leave no old tree to go on with; the one before is still there for the next pose.
+TEST(MovingBvh, ThatIsTornWithoutRoomIsAnError)
+{
+    Mesh rest, chain;
+    for (uint32_t i = 0; i < 400; ++i) {
+        const auto add = [&](Mesh& mesh, glm::vec3 p, float size, bool tear) {
+            const uint32_t v = uint32_t(mesh.positions.size());
+            for (const glm::vec3& corner : {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(1, 1, 0), glm::vec3(0, 1, 0)})
+                mesh.positions.push_back(p + size * corner);
+            mesh.triangles.push_back({.vertices = {v, v + 1, v + 2}});
+            mesh.triangles.push_back({.vertices = {v, tear ? v + 3 : v + 2, tear ? v + 2 : v + 3}});
+        };
+        add(rest, {float(i % 20), float(i / 20), 0}, 0.5f, false);
+        const float s = std::pow(0.93f, float(i));
+        add(chain, {s, 0, s}, s, true);
+    }
+    scene::MovingBvh bvh(inputOf(rest), ANY_SIZE), fresh(inputOf(chain), ANY_SIZE);
+    const Bvh flat = bvh.at(inputOf(rest));
+    ASSERT_EQ(flat.stats.triangleRecords, 400u);
+    ASSERT_GT(fresh.at(inputOf(chain)).stats.depth, bvh.most().depth);
+    EXPECT_THROW(bvh.at(inputOf(chain)), Error);
+    EXPECT_EQ(bvh.at(inputOf(rest)).triangles, flat.triangles);
+    EXPECT_EQ(bvh.at(inputOf(rest)).nodes, flat.nodes);
+}
+
 TEST(MovingBvh, MayBeOfNothingOrOfOneTriangle)
 {
     Mesh none, one;
