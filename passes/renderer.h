@@ -122,7 +122,7 @@ class Renderer
     gpu::Buffer frameUniform_, counters_, previousPixels_;
     FrameBuffers buffers_;
     FramePlan plan_;
-    std::vector<std::unique_ptr<Stage>> stages_; // of the plan; null until needed
+    std::vector<std::unique_ptr<Stage>> stages_;      // of the plan; null until needed
     std::array<std::unique_ptr<Stage>, 2> reproject_; // [1]: from a frame in which the scene was another
     double compileSeconds_ = 0;
 

@@ -20,9 +20,9 @@ struct BvhStats {
     uint64_t triangleRecords = 0;  // with duplicates of spatial splits
     uint64_t skippedTriangles = 0; // degenerate or non-finite
     uint64_t bytes = 0;
-    double sahCost = 0; // expected cost of a random ray through the scene's box, in node visits
+    double sahCost = 0;      // expected cost of a random ray through the scene's box, in node visits
     double buildSeconds = 0; // that the tree took, not its refitting
-    uint32_t depth = 0; // largest number of stack entries that traversal can need, at most shared::BVH_STACK_SIZE
+    uint32_t depth = 0;      // largest number of stack entries that traversal can need, at most shared::BVH_STACK_SIZE
 };
 
 struct Bvh {

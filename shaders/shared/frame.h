@@ -26,13 +26,13 @@ struct FrameUniform {
     uint frame;  // index since the last reset; with the pixel it is the path's seed
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
-    uint slice;           // which half of Surfaces is this frame's: 0 or 1
-    uint previousSlice;   // and which is the previous frame's: the same one while the camera rests
-    uint maxConfidence;   // M_c, frames
-    uint neighborCount;   // K
-    float neighborRadius; // pixels
-    uint runHeight;       // pixels, of one run's picture: independent runs lie below each other
-    uint world;           // which of the scene's two worlds this frame shows: 0 or 1
+    uint slice;                   // which half of Surfaces is this frame's: 0 or 1
+    uint previousSlice;           // and which is the previous frame's: the same one while the camera rests
+    uint maxConfidence;           // M_c, frames
+    uint neighborCount;           // K
+    float neighborRadius;         // pixels
+    uint runHeight;               // pixels, of one run's picture: independent runs lie below each other
+    uint world;                   // which of the scene's two worlds this frame shows: 0 or 1
     vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };

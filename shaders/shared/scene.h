@@ -18,8 +18,8 @@ SHARED_CONST uint ATTRIBUTE_ROWS_BARE = 4u;
 SHARED_CONST uint ATTRIBUTE_ROWS_UV = 6u;
 SHARED_CONST uint ATTRIBUTE_ROWS_FULL = 9u;
 
-// A scene that moves is there twice, as two worlds: as it is, and as it was in the frame before. Each table but Texels, and
-// but the environment, holds one after the other.
+// A scene that moves is there twice, as two worlds: as it is, and as it was in the frame before. Each table but Texels,
+// and but the environment, holds one after the other.
 //
 // Table SceneData holds, at the offsets in SceneUniform: environment texels and aliases; materials, lights, punctual
 // lights. Material: rows 0-4, then TEXTURE_ROWS rows for each texture use.

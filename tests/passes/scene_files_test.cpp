@@ -43,9 +43,8 @@ std::string fingerprint(const scene::Scene& scene)
 {
     const scene::SceneTables tables = scene::makeSceneTables(scene, uint64_t{1} << 27, {});
     std::string bytes;
-    for (const auto* table :
-         {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels, &tables.environment,
-          &tables.sceneData})
+    for (const auto* table : {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels,
+                              &tables.environment, &tables.sceneData})
         bytes.append(reinterpret_cast<const char*>(table->data()), table->size() * sizeof(glm::uvec4));
     const scene::Camera& camera = scene.cameras[0];
     for (const glm::dvec3& v : {camera.position, camera.forward, glm::dvec3(camera.yfov, camera.xmag, camera.ymag)})
