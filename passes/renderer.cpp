@@ -111,7 +111,7 @@ void Renderer::tune()
 void Renderer::createStages()
 {
     hitsFrom_.reset();
-    reproject_.reset();
+    reproject_ = {};
     compileSeconds_ = 0;
     plan_ = framePlan(*scene_, settings_, runs_);
     stages_.clear();
@@ -181,11 +181,11 @@ void Renderer::renderFrame()
     frame_.frame = uint32_t(frameCount_);
     frame_.previousSlice = frame_.slice;
     CHECK(hasPose_);
-    const bool moved = frame_.world != lastWorld_;
+    moved_ = frame_.world != lastWorld_;
     const FrameState state{.hitsKnown = seesTheSame(hitsFrom_),
                            .history = settings_.temporal && historyFrames_ > 0,
-                           .sameView = !moved && seesTheSame(frame_.previousCamera),
-                           .moved = moved};
+                           .sameView = !moved_ && seesTheSame(frame_.previousCamera),
+                           .moved = moved_};
     if (!state.hitsKnown) frame_.slice = 1 - frame_.slice;
     hitsFrom_ = frame_.camera;
     device_.queue().writeValue(frameUniform_, frame_);
@@ -223,11 +223,15 @@ void Renderer::setScene(const scene::Scene& posed, double seconds)
 {
     CHECK(scene_->moves());
     if (sceneSeconds_ == seconds) return;
-    frame_.world = 1 - lastWorld_; // the other one belongs to the last frame, and may be asked once more
-    scene_->show(frame_.world, posed);
+    const uint32_t world = 1 - lastWorld_; // the other one belongs to the last frame, and may be asked once more
+    scene_->show(world, posed);
+    frame_.world = world;
     sceneSeconds_ = seconds;
+    if (hasPose_)
+        hitsFrom_.reset();
+    else
+        lastWorld_ = world; // the first pose is that of the last frame, if there was one: restore()
     hasPose_ = true;
-    hitsFrom_.reset();
 }
 
 void Renderer::wait()
@@ -262,15 +266,21 @@ image::Image Renderer::read(const Output& output)
 std::vector<uint32_t> Renderer::readPreviousPixels()
 {
     CHECK_LE(uint64_t{2}, frameCount_);
+    CHECK_EQ(frame_.world, lastWorld_); // else the frame before the last one's is overwritten
     wait();
-    if (!reproject_) {
+    std::unique_ptr<Stage>& reproject = reproject_[moved_ ? 1 : 0];
+    if (!reproject) {
         const uint64_t pixels = uint64_t{settings_.width} * settings_.height;
-        previousPixels_ = device_.createBuffer(
-            {.label = "PreviousPixels", .size = std::max<uint64_t>(pixels, 4) * sizeof(uint32_t), .setting = "--size"});
-        reproject_ = makeStage("reproject", variant(), {{"PreviousPixels", &previousPixels_}});
+        if (!reproject_[0] && !reproject_[1])
+            previousPixels_ = device_.createBuffer({.label = "PreviousPixels",
+                                                    .size = std::max<uint64_t>(pixels, 4) * sizeof(uint32_t),
+                                                    .setting = "--size"});
+        Variant between = variant();
+        between.BETWEEN_WORLDS = moved_;
+        reproject = makeStage("reproject", between, {{"PreviousPixels", &previousPixels_}});
     }
     gpu::CommandEncoder encoder = device_.createCommandEncoder("reproject");
-    reproject_->encode(encoder, {settings_.width, settings_.height});
+    reproject->encode(encoder, {settings_.width, settings_.height});
     device_.queue().wait(device_.queue().submit(std::move(encoder)));
     std::vector<uint32_t> list = device_.queue().readAs<uint32_t>(previousPixels_);
     list.resize(size_t{settings_.width} * settings_.height); // the buffer may be larger
@@ -345,7 +355,8 @@ void Renderer::restore(const RendererState& state)
     historyFrames_ = state.historyFrames;
     frame_.camera = state.camera;
     frame_.previousCamera = state.previousCamera;
-    lastWorld_ = frame_.world;
+    hasPose_ = !scene_->moves();
+    sceneSeconds_.reset();
     frame_.slice = 0; // save() has put the last frame's half of surfaces_ there
     hitsFrom_.reset();
     if (frameCount_ > 0 && std::ranges::find(buffers, &buffers_["Surfaces"]) != buffers.end())

@@ -1,6 +1,7 @@
 #pragma once
 // Renders frames of one scene with one set of settings. framePlan() is the page to read first (passes/frame_plan.cpp).
 
+#include <array>
 #include <deque>
 #include <map>
 #include <memory>
@@ -87,7 +88,7 @@ class Renderer
 
     image::Image read(const Output& output); // waits; in scene units
     // Waits. For each pixel of the first run the index of the one that saw the same point in the frame before the last,
-    // or shared::NO_NEIGHBOR: as temporal reuse finds it. Needs two frames.
+    // or shared::NO_NEIGHBOR: as temporal reuse finds it. Needs two frames, and no setScene() since the last one.
     std::vector<uint32_t> readPreviousPixels();
     RenderStats stats(); // waits
 
@@ -99,7 +100,7 @@ class Renderer
     gpu::Device& device() { return device_; }
     // For later and another process: a renderer of an equal scene with equal settings (but for frames, seconds and
     // average) on an equal device goes on from a state to the bit. restore() throws Error when it does not fit. A scene
-    // that moves must be in the pose of the state's last frame.
+    // that moves has no pose then: setScene() gives it that of the last frame, before any other.
     RendererState save(); // waits
     void restore(const RendererState& state);
 
@@ -121,13 +122,14 @@ class Renderer
     gpu::Buffer frameUniform_, counters_, previousPixels_;
     FrameBuffers buffers_;
     FramePlan plan_;
-    std::vector<std::unique_ptr<Stage>> stages_; // of the plan; null until needed
-    std::unique_ptr<Stage> reproject_;
+    std::vector<std::unique_ptr<Stage>> stages_;      // of the plan; null until needed
+    std::array<std::unique_ptr<Stage>, 2> reproject_; // [1]: from a frame in which the scene was another
     double compileSeconds_ = 0;
 
     shared::FrameUniform frame_ = {};
     std::optional<shared::CameraUniform> hitsFrom_; // the camera that the frame's half of Surfaces was traced from
     uint32_t lastWorld_ = 0;                        // that a frame has shown
+    bool moved_ = false;                            // before the last frame
     bool hasPose_ = true;
     std::optional<double> sceneSeconds_;
     uint64_t frameCount_ = 0, historyFrames_ = 0; // the latter of reservoirs that the next frame may reuse

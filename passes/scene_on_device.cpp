@@ -2,6 +2,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/fingerprint.h"
+#include "engine/scene/motion.h"
 
 #include <cmath>
 #include <span>
@@ -24,10 +25,11 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
         radianceScale = made.radianceScale;
     };
     if (moves) {
-        poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes / 2, bvhProgress, set);
+        poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes, bvhProgress, set);
         tables = std::make_unique<scene::GpuScene>(gpu, *poses);
         poses->forgetTexels();
         take(poses->last());
+        motion = scene.motion->fingerprint();
         show(0, scene);
     } else {
         const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, bvhProgress, set);
@@ -41,7 +43,7 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
 SceneOnDevice::SceneOnDevice(const SceneOnDevice& other)
     : device(other.device), pipelines(other.pipelines), camera(other.camera), featureSet(other.featureSet),
       tablesSeconds(other.tablesSeconds), bvh(other.bvh), lights(other.lights), features(other.features),
-      lengthScale(other.lengthScale), radianceScale(other.radianceScale),
+      lengthScale(other.lengthScale), radianceScale(other.radianceScale), motion(other.motion),
       poses(std::make_unique<scene::MovingTables>(*other.poses)),
       tables(std::make_unique<scene::GpuScene>(device, *poses, other.tables.get()))
 {
@@ -79,7 +81,7 @@ uint64_t SceneOnDevice::fingerprint() const
 {
     const double scales[] = {lengthScale, radianceScale};
     const shared::CameraUniform first = uniformOf(camera, 1);
-    const uint64_t contents = ::fingerprint(std::as_bytes(std::span(scales)), tables->contents());
+    const uint64_t contents = ::fingerprint(std::as_bytes(std::span(scales)), tables->contents() ^ motion);
     return ::fingerprint(std::as_bytes(std::span(&first, 1)), contents);
 }
 

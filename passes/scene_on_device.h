@@ -35,7 +35,7 @@ struct SceneOnDevice {
     // Does every pixel see the same point in each frame while the camera rests? This alone lets frames take over what
     // an earlier one saw: not where rays go anywhere through the pixel, nor where surfaces exist by chance.
     bool viewRepeats(const Settings& settings) const;
-    uint64_t fingerprint() const; // of geometry, materials, lights, first camera
+    uint64_t fingerprint() const; // of geometry, materials, lights, first camera, and what moves
 
     gpu::Device& device;
     std::shared_ptr<PipelinePool> pipelines;
@@ -46,6 +46,7 @@ struct SceneOnDevice {
     scene::LightCounts lights;
     scene::SceneFeatures features;
     double lengthScale = 1, radianceScale = 1;  // scaled over the scene's units
+    uint64_t motion = 0;                        // a fingerprint
     std::unique_ptr<scene::MovingTables> poses; // of a scene that moves
     std::unique_ptr<scene::GpuScene> tables;
 };

@@ -343,11 +343,12 @@ std::vector<RowRange> rangesOf(std::span<const uint32_t> items, uint32_t stride)
 }
 
 struct MovingBvh::Tree {
-    std::vector<uint8_t> moves; // by triangle
-    std::vector<TrianglePair> pairs;
+    std::vector<uint8_t> moves;      // by triangle
+    std::vector<TrianglePair> pairs; // as they were paired
+    std::vector<TrianglePair> posed; // as the last pose has them
     WideTree wide;
     NodeLayout layout;
-    double builtCost = 0;
+    double builtCost = 0, buildSeconds = 0;
     float magnitude = 0; // with which it is encoded
     Most most;
     // What follows the triangles that move.
@@ -360,14 +361,16 @@ struct MovingBvh::Tree {
     {
         std::vector<uint32_t> all(input.triangles.size());
         std::iota(all.begin(), all.end(), 0u);
-        pairs = pairTriangles(input, all, Edges::OfVertices);
+        posed = pairs = pairTriangles(input, all, Edges::OfVertices);
     }
     void build(const BvhInput& input)
     {
-        wide = collapse(reinsert(buildBinaryTree(input, pairs, false)));
+        const auto start = Clock::now();
+        wide = collapse(reinsert(buildBinaryTree(input, posed, false)));
         layout = layOut(wide);
         builtCost = sahCost(wide);
         findWhatMoves();
+        buildSeconds = secondsSince(start);
     }
     void findWhatMoves()
     {
@@ -396,26 +399,37 @@ struct MovingBvh::Tree {
         changes.nodes = rangesOf(rows, shared::BVH_NODE_STRIDE);
         changes.triangles = rangesOf(movingRecords, shared::BVH_RECORD_STRIDE);
     }
+    // False: the pairs do not hold any more.
+    bool follow(const BvhInput& input)
+    {
+        for (const uint32_t i : movingPairs) {
+            TrianglePair pair = pairs[i];
+            if (!scene::follow(pair, input)) return false;
+            posed[i] = pair;
+        }
+        return true;
+    }
     // Everything, with room for boxes that grow somewhat.
     void encodeAll(const BvhInput& input)
     {
         magnitude = 1.25f * magnitudeOf(wide);
-        tables = tablesOf(wide, layout, magnitude, pairs, input);
+        tables = tablesOf(wide, layout, magnitude, posed, input);
         ++changes.version;
     }
     void encodeMoving(const BvhInput& input)
     {
         for (const uint32_t n : movingNodes) encodeNode(wide, layout, magnitude, n, tables.nodes);
-        for (const uint32_t record : movingRecords) encodeRecord(wide, pairs, input, record, tables.triangles);
+        for (const uint32_t record : movingRecords) encodeRecord(wide, posed, input, record, tables.triangles);
         tables.stats.sahCost = sahCost(wide);
     }
     uint32_t nodeRows() const { return layout.rows * shared::BVH_NODE_STRIDE; }
 };
 
-MovingBvh::MovingBvh(const BvhInput& rest, std::vector<uint8_t> moves, uint64_t maxTableBytes)
+MovingBvh::MovingBvh(const BvhInput& rest, uint64_t maxTableBytes, std::vector<uint8_t> moves)
     : tree_(std::make_unique<Tree>())
 {
     requireValid(rest);
+    if (moves.empty()) moves.assign(rest.triangles.size(), 1);
     CHECK_EQ(moves.size(), rest.triangles.size());
     const uint64_t count = std::max<uint64_t>(rest.triangles.size(), 1); // of pairs, where no edge stays common
     requireFits("triangles", count, shared::BVH_RECORD_STRIDE, maxTableBytes);
@@ -430,6 +444,7 @@ MovingBvh::MovingBvh(const BvhInput& rest, std::vector<uint8_t> moves, uint64_t 
                  .recordRows = uint32_t(count) * shared::BVH_RECORD_STRIDE,
                  .depth = std::min(tree.wide.levels + 4, shared::BVH_STACK_SIZE)};
     tree.encodeAll(rest);
+    if (rest.progress) rest.progress(1.0);
 }
 
 MovingBvh::MovingBvh(const MovingBvh& other) : tree_(std::make_unique<Tree>(*other.tree_)) {}
@@ -439,14 +454,11 @@ MovingBvh::~MovingBvh() = default;
 const Bvh& MovingBvh::at(const BvhInput& input)
 {
     constexpr double WORN = 1.5;
-    const auto start = Clock::now();
     Tree& tree = *tree_;
-    const bool torn =
-        !std::ranges::all_of(tree.movingPairs, [&](uint32_t i) { return shareVertices(input, tree.pairs[i]); });
-    if (!torn) refit(tree.wide, tree.movingNodes, tree.pairs, input);
-    const bool worn = !torn && sahCost(tree.wide) > WORN * tree.builtCost;
+    const bool torn = !tree.follow(input);
+    if (!torn) refit(tree.wide, tree.movingNodes, tree.posed, input);
     bool isNew = false;
-    if (torn || worn) {
+    if (torn || sahCost(tree.wide) > WORN * tree.builtCost) {
         Tree fresh = tree;
         if (torn) fresh.pair(input);
         fresh.build(input);
@@ -462,7 +474,7 @@ const Bvh& MovingBvh::at(const BvhInput& input)
         tree.encodeAll(input);
     else
         tree.encodeMoving(input);
-    tree.tables.stats.buildSeconds = secondsSince(start);
+    tree.tables.stats.buildSeconds = tree.buildSeconds;
     return tree.tables;
 }
 

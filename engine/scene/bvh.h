@@ -20,9 +20,9 @@ struct BvhStats {
     uint64_t triangleRecords = 0;  // with duplicates of spatial splits
     uint64_t skippedTriangles = 0; // degenerate or non-finite
     uint64_t bytes = 0;
-    double sahCost = 0; // expected cost of a random ray through the scene's box, in node visits
-    double buildSeconds = 0;
-    uint32_t depth = 0; // largest number of stack entries that traversal can need, at most shared::BVH_STACK_SIZE
+    double sahCost = 0;      // expected cost of a random ray through the scene's box, in node visits
+    double buildSeconds = 0; // that the tree took, not its refitting
+    uint32_t depth = 0;      // largest number of stack entries that traversal can need, at most shared::BVH_STACK_SIZE
 };
 
 struct Bvh {
@@ -56,9 +56,9 @@ std::vector<RowRange> rangesOf(std::span<const uint32_t> items, uint32_t stride)
 class MovingBvh
 {
   public:
-    // `moves`: 0 or 1 for each triangle; the others are where they are at rest in all poses. Throws Error like
-    // buildBvh().
-    MovingBvh(const BvhInput& rest, std::vector<uint8_t> moves, uint64_t maxTableBytes);
+    // `moves`: 0 or 1 for each triangle, empty for 1; the others are where they are at rest in all poses. Throws Error
+    // like buildBvh().
+    MovingBvh(const BvhInput& rest, uint64_t maxTableBytes, std::vector<uint8_t> moves = {});
     MovingBvh(const MovingBvh& other);
     MovingBvh& operator=(const MovingBvh&) = delete;
     ~MovingBvh();

@@ -24,11 +24,17 @@ struct Plan {
 
 using Roots = std::vector<uint32_t>; // binary nodes
 
+// Of the whole tree's: what smaller nodes count with, too, so that what has no area for now gets as few nodes as may
+// be, and not just any.
+constexpr float LEAST_AREA = 1e-12f;
+
 class Collapser
 {
   public:
     explicit Collapser(const BinaryTree& tree) : tree_(tree), plans_(tree.size())
     {
+        const float area = tree.empty() ? 0 : tree.back().box.halfArea();
+        leastArea_ = area > 0 ? LEAST_AREA * area : 1;
         for (size_t node = 0; node < tree.size(); ++node) plans_[node] = plan(tree[node]);
     }
 
@@ -47,7 +53,7 @@ class Collapser
     Plan plan(const BinaryNode& node) const
     {
         Plan plan;
-        const float area = node.box.halfArea();
+        const float area = std::max(node.box.halfArea(), leastArea_);
         if (node.isLeaf()) {
             plan.cost.fill(area * BVH_PAIR_COST);
             return plan;
@@ -202,6 +208,7 @@ class Collapser
     }
 
     const BinaryTree& tree_;
+    float leastArea_;
     std::vector<Plan> plans_;
     bool byHeight_ = false;
 };
@@ -234,9 +241,9 @@ void refit(WideTree& tree, std::span<const uint32_t> nodes, std::span<const Tria
 
 double sahCost(const WideTree& tree)
 {
-    if (tree.pairs.empty()) return 0;
     Box root;
     for (const WideChild& child : tree.nodes[0].slots) root.extend(child.box);
+    if (tree.pairs.empty() || root.halfArea() == 0) return 0;
     double cost = BVH_NODE_COST * root.halfArea();
     for (const WideNode& node : tree.nodes)
         for (const WideChild& child : node.slots) {

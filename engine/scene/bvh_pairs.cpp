@@ -146,14 +146,32 @@ std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const u
     return Pairing(input, usable, edges).run();
 }
 
-bool shareVertices(const BvhInput& input, const TrianglePair& pair)
+bool follow(TrianglePair& pair, const BvhInput& input)
 {
     if (pair.second == NONE) return true;
-    const auto vertex = [&](uint32_t triangle, uint32_t corner) {
-        return input.triangles[triangle].vertices[corner % 3];
+    const auto verticesOf = [&](uint32_t triangle) { return input.triangles[triangle].vertices; };
+    const auto share = [&](const TrianglePair& p) {
+        const auto a = verticesOf(p.first), b = verticesOf(p.second);
+        return a[(p.firstTurn + 1) % 3] == b[(p.secondTurn + 2) % 3] &&
+               a[(p.firstTurn + 2) % 3] == b[(p.secondTurn + 1) % 3];
     };
-    return vertex(pair.first, pair.firstTurn + 1) == vertex(pair.second, pair.secondTurn + 2) &&
-           vertex(pair.first, pair.firstTurn + 2) == vertex(pair.second, pair.secondTurn + 1);
+    const auto isPoint = [&](uint32_t triangle) {
+        const auto v = verticesOf(triangle);
+        return v[0] == v[1] && v[1] == v[2];
+    };
+    TrianglePair mirrored = pair;
+    mirrored.firstTurn = (3 - pair.firstTurn) % 3;
+    mirrored.secondTurn = (3 - pair.secondTurn) % 3;
+    if (share(pair)) return true;
+    if (share(mirrored))
+        pair = mirrored;
+    else if (isPoint(pair.second))
+        pair = {.first = pair.first, .firstTurn = pair.firstTurn};
+    else if (isPoint(pair.first))
+        pair = {.first = pair.second, .firstTurn = pair.secondTurn};
+    else
+        return false;
+    return true;
 }
 
 } // namespace scene

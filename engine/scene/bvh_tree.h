@@ -83,9 +83,10 @@ enum class Edges { OfPositions, OfVertices };
 std::vector<TrianglePair> pairTriangles(const BvhInput& input, std::span<const uint32_t> usable,
                                         Edges edges = Edges::OfPositions);
 
-// Whether their edge is a common one of vertices, still: triangles without area name one vertex three times, and where
-// a transform mirrors, two vertices have changed places.
-bool shareVertices(const BvhInput& input, const TrianglePair& pair);
+// Makes a pair across a common edge of vertices that of another pose: where a transform mirrors, vertices 1 and 2 have
+// changed places; a triangle without area names one vertex three times and is left out, for nothing meets it. False:
+// both have an area but no such edge any more.
+bool follow(TrianglePair& pair, const BvhInput& input);
 
 // Bittner, Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013: puts large
 // nodes where they enlarge the tree least. At most BVH_MAX_BINARY_DEPTH deep if the given tree was.
@@ -98,7 +99,7 @@ WideTree collapse(const BinaryTree& tree);
 // Fits the boxes of these nodes, children before parents, to where the pairs' triangles are.
 void refit(WideTree& tree, std::span<const uint32_t> nodes, std::span<const TrianglePair> pairs, const BvhInput& input);
 
-// Expected cost of a ray through the root's box.
+// Expected cost of a ray through the root's box; 0 where that has no area.
 double sahCost(const WideTree& tree);
 
 // Where the nodes lie in their table: the child in slot s of node n at row first[n] + s, so that traversal keeps one

@@ -91,6 +91,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
 GpuScene::GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other)
     : GpuScene(device, tables.last(), tables.most(), 2, other ? other->texels_ : nullptr)
 {
+    if (other) contents_ = other->contents_; // textures are forgotten by now
 }
 
 void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose, const TableChanges& changes)

@@ -7,6 +7,7 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/fingerprint.h"
 #include "engine/scene/choice.h"
 
 namespace scene
@@ -205,6 +206,59 @@ uint64_t Motion::bytes() const
         }
     }
     return sum;
+}
+
+uint64_t Motion::fingerprint() const
+{
+    uint64_t state = 0;
+    const auto take = [&](const auto& values) { state = ::fingerprint(std::as_bytes(std::span(values)), state); };
+    const auto takeWords = [&](std::initializer_list<uint64_t> list) { take(std::vector(list)); };
+    const auto takeDoubles = [&](std::initializer_list<double> list) { take(std::vector(list)); };
+    const auto takeMatrix = [&](const glm::dmat4& m) { take(std::vector{m[0], m[1], m[2], m[3]}); };
+    for (const Animation& animation : animations) {
+        takeWords({animation.channels.size()});
+        for (const Channel& c : animation.channels)
+            takeWords({uint64_t(c.property), c.object, uint64_t(c.interpolation), c.width, c.times, c.values});
+    }
+    for (const auto& array : numbers) take(array);
+    for (const Node& node : nodes) {
+        takeWords({node.parent, node.visible});
+        takeMatrix(node.worldFromParent);
+        takeMatrix(node.rest.toMatrix());
+        take(node.weights);
+    }
+    for (const Skin& skin : skins) {
+        take(skin.joints);
+        for (const glm::dmat4& matrix : skin.inverseBindings) takeMatrix(matrix);
+    }
+    for (const Mesh& mesh : meshes) {
+        for (const auto& triangle : mesh.triangles) take(triangle);
+        for (const auto& values : mesh.vertices.values) take(values);
+        for (const MorphTarget& target : mesh.vertices.targets) {
+            for (const Displacements& moved : target) {
+                take(moved.vertices);
+                take(moved.values);
+            }
+        }
+        take(mesh.vertices.influenceEnds);
+        for (const Influence& influence : mesh.vertices.influences)
+            takeDoubles({double(influence.joint), influence.weight});
+    }
+    for (const Part& part : parts) {
+        takeWords({part.node, part.mesh, part.skin, part.firstVertex, part.firstTriangle});
+        takeMatrix(part.nodeFromMesh);
+    }
+    for (const Lamp& lamp : lamps)
+        takeDoubles(
+            {lamp.color.x, lamp.color.y, lamp.color.z, lamp.intensity, lamp.innerConeAngle, lamp.outerConeAngle});
+    for (const PlacedLight& light : lights) takeWords({light.light, light.node, light.lamp});
+    for (const Lens& lens : lenses) takeDoubles({lens.yfov, lens.xmag, lens.ymag});
+    for (const PlacedCamera& camera : cameras) takeWords({camera.camera, camera.node, camera.lens});
+    for (const Paint& paint : paints)
+        takeDoubles({double(paint.material), paint.baseColor.x, paint.baseColor.y, paint.baseColor.z, paint.baseColor.w,
+                     paint.metallic, paint.roughness, paint.emissiveFactor.x, paint.emissiveFactor.y,
+                     paint.emissiveFactor.z, paint.emissiveStrength});
+    return state;
 }
 
 std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& choice)

@@ -79,7 +79,8 @@ struct Motion {
     std::vector<Paint> paints;
     double radius = 1; // of the scene at rest, meters; says how far from it cameras aim
 
-    uint64_t bytes() const; // that it takes, roughly
+    uint64_t bytes() const;       // that it takes, roughly
+    uint64_t fingerprint() const; // of all that poses depend on, beside the flat scene
 };
 
 // Which animations a choice means: "off", "all", else that name, else its index. Throws Error: there is none, or it

@@ -199,7 +199,7 @@ void fillSceneData(SceneTables& tables, const LightTables& lights, const std::ve
     uniform.radius = float(radius * tables.lengthScale);
 }
 
-// All but the tree.
+// All but the tree. With `moves`, triangles are there twice on the device.
 SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius,
                      const LightTables& lights, MaterialTables materials, bool moves, uint64_t maxTableBytes,
                      FeatureSet featureSet)
@@ -218,15 +218,14 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
                               lights.environmentAliases.end());
     tables.uniform.environmentWidth = black ? 1 : scene.environment.width;
     tables.uniform.environmentHeight = black ? 1 : scene.environment.height;
+    tables.uniform.attributeRows = attributeRows(tables.features);
     requireFits("textures", tables.texels.size(), maxTableBytes);
-    const uint32_t rows = attributeRows(tables.features);
-    tables.uniform.attributeRows = rows;
-    requireFits("triangles", scene.triangles.size() * rows, maxTableBytes);
+    const uint32_t rows = tables.uniform.attributeRows;
+    requireFits("triangles", (moves ? 2 : 1) * scene.triangles.size() * rows, maxTableBytes);
     tables.attributes.resize(scene.triangles.size() * rows);
     for (size_t t = 0; t < scene.triangles.size(); ++t)
         packAttributes(scene, positions, lights.lightOfTriangle[t], rows, t, tables.attributes);
     fillSceneData(tables, lights, materials.rows, radius);
-    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
     return tables;
 }
 
@@ -241,6 +240,7 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     const LightTables lights = makeLightTables(scene, positions, lengthScale, radius * lengthScale);
     SceneTables tables = tablesOf(scene, positions, lengthScale, radius, lights,
                                   makeMaterialTables(scene, lights.radianceScale), false, maxTableBytes, featureSet);
+    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
     tables.bvh = buildBvh({.positions = positions,
                            .triangles = scene.triangles,
                            .needsAlphaTest = alphaTests(scene, tables.features),
@@ -250,7 +250,6 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
 }
 
 struct MovingTables::Kept {
-    uint64_t maxTableBytes;
     std::vector<glm::vec3> positions; // scaled, of the last pose
     LightTables lights;               // at rest
     std::vector<glm::uvec4> materials;
@@ -270,13 +269,13 @@ struct MovingTables::Kept {
     double radiusOf(const Scene& scene) const;
 };
 
-// Those of the parts; all of a scene that has none and moves nevertheless.
+// Those of the parts; all of a scene without animations, of which whoever moves it says nothing.
 void MovingTables::Kept::findWhatMoves(const Scene& scene)
 {
-    std::vector<uint8_t> triangles(scene.triangles.size(), scene.motion->parts.empty());
+    std::vector<uint8_t> triangles(scene.triangles.size(), scene.motion->animations.empty());
     for (const Motion::Part& part : scene.motion->parts)
         std::fill_n(triangles.begin() + part.firstTriangle, scene.motion->meshes[part.mesh].triangles.size(), 1);
-    std::vector<uint8_t> vertices(scene.positions.size());
+    std::vector<uint8_t> vertices(scene.positions.size(), scene.motion->animations.empty());
     for (uint32_t t = 0; t < triangles.size(); ++t) {
         if (!triangles[t]) continue;
         movingTriangles.push_back(t);
@@ -309,7 +308,7 @@ double MovingTables::Kept::radiusOf(const Scene& scene) const
 
 MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
                            FeatureSet featureSet)
-    : kept_(std::make_unique<Kept>(Kept{.maxTableBytes = maxTableBytes}))
+    : kept_(std::make_unique<Kept>())
 {
     CHECK(rest.motion);
     Kept& kept = *kept_;
@@ -328,7 +327,7 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
     for (const uint32_t t : kept.movingTriangles) moves[t] = 1;
     BvhInput input = kept.bvhInput(rest);
     input.progress = bvhProgress;
-    kept.bvh.emplace(input, std::move(moves), maxTableBytes);
+    kept.bvh.emplace(input, maxTableBytes / 2, std::move(moves)); // one of two worlds
     kept.tables.bvh = kept.bvh->at(input);
 
     const MovingBvh::Most& tree = kept.bvh->most();
@@ -338,7 +337,8 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
                  .attributes = uint32_t(kept.tables.attributes.size()),
                  .sceneData = uint32_t(kept.materials.size() + kept.lights.punctual.size() + lights),
                  .depth = tree.depth};
-    requireFits("materials and lights", kept.tables.environment.size() + kept.most.sceneData, maxTableBytes);
+    requireFits("materials and lights", kept.tables.environment.size() + 2 * uint64_t{kept.most.sceneData},
+                maxTableBytes);
     kept.changes.attributes = rangesOf(kept.movingTriangles, kept.tables.uniform.attributeRows);
     kept.changes.tree = kept.bvh->changes();
 }

@@ -73,7 +73,7 @@ struct TableChanges {
 class MovingTables
 {
   public:
-    // As makeSceneTables(), of Scene::motion's scene at rest.
+    // As makeSceneTables(), of Scene::motion's scene at rest; the limit is that of tables which hold two poses.
     MovingTables(const Scene& rest, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress = {},
                  FeatureSet featureSet = FeatureSet::Needed);
     MovingTables(const MovingTables& other);

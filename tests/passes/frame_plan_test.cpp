@@ -1,9 +1,12 @@
 #include "passes/frame_plan.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
 #include "tests/support/gpu_fixture.h"
 
@@ -21,13 +24,23 @@ class FramePlan : public GpuTest
         const scene::Scene scene = scene::makeCornell();
         return {device(), scene, scene.cameras.at(0), set, {}, nullptr};
     }
-    // Names of what runs; "=" for a variant without shifts.
+    static passes::SceneOnDevice movingCornell()
+    {
+        scene::Scene scene = scene::makeCornell();
+        scene.motion = std::make_shared<scene::Motion>();
+        return {device(), scene, scene.cameras.at(0), scene::FeatureSet::Needed, {}, nullptr, true};
+    }
+    static std::string nameOf(const std::string& shader, const passes::Variant& variant)
+    {
+        return (variant.SAME_VIEW ? "=" : variant.BETWEEN_WORLDS ? "~" : "") + shader;
+    }
+    // Names of what runs; "=" for a variant without shifts, "~" for one between worlds.
     static Names stages(const passes::SceneOnDevice& scene, const passes::Settings& settings,
                         const passes::FrameState& frame)
     {
         Names names;
         for (const passes::PlannedStage& stage : passes::framePlan(scene, settings, 1))
-            if (stage.runs(frame)) names.push_back(std::string(stage.variant.SAME_VIEW ? "=" : "") + stage.shader);
+            if (stage.runs(frame)) names.push_back(nameOf(stage.shader, stage.variant));
         return names;
     }
 };
@@ -47,6 +60,27 @@ TEST_F(FramePlan, IsThePapersFrame)
     settings.spatial = 0;
     EXPECT_EQ(stages(scene, settings, {.hitsKnown = true, .history = true, .sameView = true}),
               (Names{"canonical", "=temporal", "spatial_gather", "accumulate"}));
+}
+
+// Temporal reuse turns to the previous world where the scene has moved, and only there: nothing else ever does.
+TEST_F(FramePlan, ReusesBetweenWorldsExactlyWhereTheSceneHasMoved)
+{
+    const passes::SceneOnDevice still = cornell(), moving = movingCornell();
+    const passes::Settings settings{.method = Method::RestirPt, .spatial = 2};
+    for (const bool history : {false, true})
+        for (const auto& [sameView, moved] : {std::pair(false, false), {true, false}, {false, true}}) {
+            const Names names = stages(moving, settings, {.history = history, .sameView = sameView, .moved = moved});
+            EXPECT_EQ(std::ranges::count(names, "~temporal"), history && moved);
+            EXPECT_EQ(std::ranges::count(names, "=temporal"), history && sameView);
+            EXPECT_EQ(std::ranges::count(names, "temporal"), history && !sameView && !moved);
+        }
+    for (const passes::SceneOnDevice* scene : {&still, &moving})
+        for (const Method method : {Method::Pt, Method::RestirPt})
+            for (const passes::PlannedStage& stage : passes::framePlan(*scene, {.method = method}, 1)) {
+                EXPECT_EQ(stage.variant.TWO_WORLDS, scene == &moving);
+                const bool reuses = std::string(stage.shader) == "temporal";
+                EXPECT_LE(stage.variant.BETWEEN_WORLDS, reuses) << stage.shader;
+            }
 }
 
 TEST_F(FramePlan, KeepsTheOrderOfTheList)
@@ -79,7 +113,7 @@ TEST_F(FramePlan, TellsThoseWhoCompileAheadWhatAFrameAfterTheFirstRuns)
     const auto listed = [](const passes::SceneOnDevice& scene, const passes::Settings& settings, bool moves) {
         Names names;
         for (const auto& [name, variant] : passes::stagesOf(scene, {&settings, 1}, moves))
-            names.push_back((variant.SAME_VIEW ? "=" : "") + name);
+            names.push_back(nameOf(name, variant));
         return names;
     };
     const passes::SceneOnDevice scene = cornell(), everything = cornell(scene::FeatureSet::Everything);
@@ -89,6 +123,9 @@ TEST_F(FramePlan, TellsThoseWhoCompileAheadWhatAFrameAfterTheFirstRuns)
     EXPECT_EQ(listed(scene, settings, false), still);
     EXPECT_EQ(listed(scene, settings, true), moving);
     EXPECT_EQ(listed(everything, settings, false), moving);
+    const Names between{"primary", "canonical", "~temporal", "spatial_gather", "accumulate"};
+    EXPECT_EQ(listed(movingCornell(), settings, false), between);
+    EXPECT_EQ(listed(movingCornell(), settings, true), between);
     settings.pixelFilter = passes::PixelFilter::Box;
     EXPECT_EQ(listed(scene, settings, false), moving);
     settings.temporal = false;

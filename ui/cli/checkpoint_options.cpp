@@ -87,8 +87,8 @@ double CheckpointOptions::start(passes::Renderer& renderer, const RunReport& rep
     if (report.settings.seconds == 0 && frames > report.settings.frames)
         throw Error("Cannot resume from \"{}\": it has {} frames already, more than the {} of --frames.", resume_,
                     frames, report.settings.frames);
-    if (frames > 0) bring(frames - 1); // what its history is of
     renderer.restore(checkpoint.state);
+    if (frames > 0) bring(frames - 1); // what its history is of
     return checkpoint.seconds;
 }
 

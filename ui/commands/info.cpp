@@ -164,7 +164,7 @@ Json playingJson(scene::Scene world, uint64_t maxTableBytes)
         length = std::max(length, animation.seconds);
     }
     if (playable.empty()) return nullptr;
-    scene::MovingTables poses(world, maxTableBytes / 2);
+    scene::MovingTables poses(world, maxTableBytes);
     const auto start = Clock::now();
     scene::pose(world, playable, length / 2);
     const double posed = secondsSince(start);

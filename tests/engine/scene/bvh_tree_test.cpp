@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -165,6 +167,119 @@ TEST(BvhReinsert, LeavesATreeThatWouldGetTooDeep)
     for (const scene::BinaryNode& node : after)
         heights.push_back(node.isLeaf() ? 0 : 1 + std::max(heights[node.left], heights[node.right]));
     EXPECT_LE(heights.back(), scene::BVH_MAX_BINARY_DEPTH);
+}
+
+// Boxes are those of what is below, in every node, wherever the triangles have gone.
+TEST(BvhRefit, FitsEveryBoxToWhatItHolds)
+{
+    constexpr uint32_t COUNT = 3000;
+    Random random(17);
+    std::vector<glm::vec3> positions;
+    std::vector<scene::Triangle> triangles;
+    std::vector<scene::TrianglePair> pairs;
+    const auto place = [&](float size) {
+        positions.clear();
+        for (uint32_t i = 0; i < COUNT; ++i) {
+            const glm::vec3 center = random.point(1.0f);
+            for (int corner = 0; corner < 4; ++corner) positions.push_back(center + random.point(size));
+        }
+    };
+    place(0.01f);
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        triangles.push_back({.vertices = {4 * i, 4 * i + 1, 4 * i + 2}});
+        triangles.push_back({.vertices = {4 * i + 1, 4 * i, 4 * i + 3}});
+        pairs.push_back(
+            {.first = 2 * i, .second = i % 3 == 0 ? scene::NONE : 2 * i + 1, .firstTurn = 2, .secondTurn = 2});
+    }
+    const scene::BvhInput input = {.positions = positions, .triangles = triangles};
+    std::vector<Box> leaves;
+    for (const scene::TrianglePair& pair : pairs) leaves.push_back(scene::boxOf(input, pair));
+    scene::WideTree tree = scene::collapse(balanced(leaves));
+
+    place(0.3f);
+    std::vector<uint32_t> nodes(tree.nodes.size());
+    std::iota(nodes.rbegin(), nodes.rend(), 0u); // children follow their parents
+    scene::refit(tree, nodes, pairs, {.positions = positions, .triangles = triangles});
+    size_t pairCount = 0;
+    const auto boxBelow = [&](auto& self, uint32_t node) -> Box {
+        Box all;
+        for (const scene::WideChild& child : tree.nodes[node].slots) {
+            Box expected;
+            if (child.kind == scene::WideChild::Kind::Empty) continue;
+            if (child.kind == scene::WideChild::Kind::Node) expected = self(self, child.first);
+            for (uint32_t i = 0; i < child.count; ++i, ++pairCount) {
+                const scene::TrianglePair& pair = pairs[tree.pairs[child.first + i]];
+                for (const uint32_t triangle : {pair.first, pair.second})
+                    for (size_t k = 0; triangle != scene::NONE && k < 3; ++k)
+                        expected.extend(
+                            {positions[triangles[triangle].vertices[k]], positions[triangles[triangle].vertices[k]]});
+            }
+            EXPECT_TRUE(child.box.lower == expected.lower && child.box.upper == expected.upper) << node;
+            all.extend(expected);
+        }
+        return all;
+    };
+    boxBelow(boxBelow, 0);
+    EXPECT_EQ(pairCount, COUNT);
+}
+
+// All ways to fold what has no area cost rays nothing, but not all take as few nodes.
+TEST(BvhCollapse, OfPointsIsSmallAndFlat)
+{
+    constexpr uint32_t COUNT = 4096;
+    std::vector<Box> leaves(COUNT, Box{glm::vec3(1), glm::vec3(1)});
+    const scene::WideTree points = scene::collapse(balanced(leaves));
+    EXPECT_EQ(points.pairs.size(), COUNT);
+    EXPECT_LE(points.nodes.size(), COUNT / 8);
+    EXPECT_LE(points.levels, 6u);
+    EXPECT_EQ(scene::sahCost(points), 0);
+    leaves.front() = {glm::vec3(0), glm::vec3(1)}; // in a scene that has an area
+    const scene::WideTree among = scene::collapse(balanced(leaves));
+    EXPECT_LE(among.nodes.size(), COUNT / 8);
+    EXPECT_LE(among.levels, 6u);
+    EXPECT_GT(scene::sahCost(among), 0);
+}
+
+// Vertices 0 1 2 and 1 0 3 about edge 0-1, each triangle turned so that it begins anywhere.
+TEST(BvhPairs, FollowMirroringAndCollapse)
+{
+    for (uint32_t turns = 0; turns < 9; ++turns) {
+        const uint32_t one = turns % 3, two = turns / 3;
+        const std::array<uint32_t, 3> a = {2, 0, 1}, b = {3, 1, 0}; // the vertex of its own first
+        const auto turned = [](const std::array<uint32_t, 3>& v, uint32_t turn) {
+            scene::Triangle triangle;
+            for (uint32_t i = 0; i < 3; ++i) triangle.vertices[(turn + i) % 3] = v[i];
+            return triangle;
+        };
+        const std::vector<scene::Triangle> rest = {turned(a, one), turned(b, two)};
+        const scene::TrianglePair pair = {.first = 0, .second = 1, .firstTurn = one, .secondTurn = two};
+        const auto followed = [&](std::vector<scene::Triangle> triangles) -> std::optional<scene::TrianglePair> {
+            scene::TrianglePair p = pair;
+            if (!scene::follow(p, {.triangles = triangles})) return std::nullopt;
+            if (p.second != scene::NONE && triangles[0].vertices[0] != triangles[0].vertices[1]) {
+                EXPECT_EQ(triangles[p.first].vertices[p.firstTurn], 2u) << "not the vertex of its own";
+                EXPECT_EQ(triangles[p.second].vertices[p.secondTurn], 3u) << "not the vertex of its own";
+            }
+            return p;
+        };
+        const auto mirrored = [](scene::Triangle triangle) {
+            std::swap(triangle.vertices[1], triangle.vertices[2]);
+            return triangle;
+        };
+        const auto point = [](scene::Triangle triangle) {
+            triangle.vertices.fill(triangle.vertices[0]);
+            return triangle;
+        };
+        EXPECT_EQ(followed(rest)->second, 1u);
+        EXPECT_EQ(followed({mirrored(rest[0]), mirrored(rest[1])})->second, 1u);
+        EXPECT_EQ(followed({rest[0], point(rest[1])})->second, scene::NONE);
+        EXPECT_EQ(followed({rest[0], point(rest[1])})->first, 0u);
+        EXPECT_EQ(followed({point(rest[0]), rest[1]})->first, 1u);
+        EXPECT_EQ(followed({point(rest[0]), mirrored(rest[1])})->first, 1u);
+        EXPECT_TRUE(followed({point(rest[0]), point(rest[1])}));
+        EXPECT_FALSE(followed({mirrored(rest[0]), rest[1]}));
+        EXPECT_FALSE(followed({rest[0], mirrored(rest[1])}));
+    }
 }
 
 } // namespace

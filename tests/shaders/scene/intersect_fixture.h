@@ -42,11 +42,16 @@ class Intersect : public GpuTest
   protected:
     std::optional<scene::TraversalStack> forcedStack; // instead of the one that fits device and tree
 
+    static scene::BvhInput inputOf(const Mesh& mesh)
+    {
+        return {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = mesh.needsAlphaTest};
+    }
     std::vector<Hit> trace(const Mesh& mesh, const std::vector<TestRay>& rays)
     {
-        const scene::Bvh bvh = scene::buildBvh(
-            {.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = mesh.needsAlphaTest},
-            device().limits().tableBytes);
+        return trace(mesh, scene::buildBvh(inputOf(mesh), device().limits().tableBytes), rays);
+    }
+    std::vector<Hit> trace(const Mesh& mesh, const scene::Bvh& bvh, const std::vector<TestRay>& rays)
+    {
         const scene::TraversalStack stack = forcedStack.value_or(scene::traversalStack(device().adapter(), bvh.stats));
         const gpu::Buffer nodes = upload("nodes", bvh.nodes, gpu::Usage::Table);
         const gpu::Buffer triangles = upload("triangles", bvh.triangles, gpu::Usage::Table);

@@ -14,6 +14,7 @@
 
 #include "engine/scene/gltf_loader.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/shapes.h"
 #include "tests/shaders/scene/intersect_fixture.h"
 
 namespace
@@ -223,6 +224,52 @@ TEST_F(Intersect, FindsTheSameWithEveryStack)
             for (size_t i = 0; i < hits.size(); ++i) differing += hits[i] != expected[i] ? 1 : 0;
             EXPECT_EQ(differing, 0u) << depth << " entries, in registers: " << inRegisters;
         }
+    }
+}
+
+// A tree that was refitted finds what one finds that was built where the triangles are now: a ball moved, mirrored,
+// shrunk to a point, with holes, and back, in the hall.
+TEST_F(Intersect, FindsTheSameInATreeThatWasRefitted)
+{
+    scene::Scene hall = scene::makeHall();
+    const size_t ball = hall.triangles.size(), vertices = hall.positions.size();
+    scene::addSphere(hall, 0, {0, 1.5f, 0}, 0.8f, 4);
+    const Mesh rest = {.positions = hall.positions, .triangles = hall.triangles};
+    const auto posed = [&](auto&& place, auto&& change) {
+        Mesh mesh = rest;
+        for (size_t v = vertices; v < mesh.positions.size(); ++v) mesh.positions[v] = place(mesh.positions[v]);
+        for (size_t t = ball; t < mesh.triangles.size(); ++t) change(t, mesh.triangles[t].vertices);
+        return mesh;
+    };
+    using Vertices = std::array<uint32_t, 3>;
+    const auto stay = [](glm::vec3 p) { return p; };
+    const auto keep = [](size_t, Vertices&) {};
+    const auto vanish = [](size_t, Vertices& v) { v.fill(v[0]); };
+    const auto mirror = [](size_t, Vertices& v) { std::swap(v[1], v[2]); };
+    const Mesh poses[] = {posed([](glm::vec3 p) { return p + glm::vec3(1, 0.3f, 1); }, keep),
+                          posed([](glm::vec3 p) { return glm::vec3(-p.x, p.y, p.z); }, mirror),
+                          posed([](glm::vec3) { return glm::vec3(1); }, vanish),
+                          posed(stay, [&](size_t t, Vertices& v) { t % 3 == 0 ? vanish(t, v) : keep(t, v); }),
+                          posed([](glm::vec3 p) { return p * (1.0f + 0.4f * std::sin(9 * p.x)); }, keep),
+                          rest};
+    scene::MovingBvh bvh(inputOf(rest), device().limits().tableBytes);
+    for (const Mesh& mesh : poses) {
+        const RaySets sets = makeRaySets(hall, EmbreeScene(mesh.positions, mesh.triangles), 64);
+        size_t onBall = 0;
+        for (const std::vector<TestRay>* rays : {&sets.camera, &sets.bounce, &sets.shadow2}) {
+            const std::vector<Hit> expected = trace(mesh, *rays), hits = trace(mesh, bvh.at(inputOf(mesh)), *rays);
+            size_t different = 0;
+            for (size_t i = 0; i < hits.size(); ++i) {
+                different += hits[i].packed != expected[i].packed;
+                onBall += hits[i].isHit() && hits[i].triangle() >= ball;
+                EXPECT_EQ(hits[i].isHit(), hits[i].occluded());
+                if (hits[i].isHit() && hits[i].triangle() == expected[i].triangle()) {
+                    EXPECT_NEAR(hits[i].t, expected[i].t, 1e-5f * (1 + expected[i].t));
+                }
+            }
+            EXPECT_LE(different, hits.size() / 2000); // at edges: advanced origins differ with the trees' boxes
+        }
+        EXPECT_EQ(onBall > 0, &mesh != &poses[2]);
     }
 }
 
