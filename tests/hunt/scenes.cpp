@@ -342,6 +342,7 @@ Scene drawScene(Kind kind, Truth truth, const Palette& palette, Draw& draw)
     case Kind::Lights: lights(b); break;
     case Kind::Things:
     case Kind::Colors: things(b); break;
+    case Kind::Moving: CHECK(false && "its scenes are of another kind");
     }
     return std::move(b.scene);
 }

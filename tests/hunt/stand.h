@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/gpu/gpu.h"
 #include "passes/camera_path.h"
@@ -39,10 +40,12 @@ class Stand
     uint64_t nonFinite() const { return nonFinite_; } // values so far
 
   private:
+    void showFrame(uint32_t frame); // camera and pose
     void take(passes::Renderer& renderer, const TakeRun& take);
 
     const Case& case_;
     passes::CameraAt cameraAt_;
+    std::vector<scene::Scene> poses_; // by frame, of a case that moves
     std::unique_ptr<passes::Renderer> trial_, truth_;
     uint64_t nonFinite_ = 0;
 };
