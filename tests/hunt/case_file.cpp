@@ -345,6 +345,8 @@ void writeCase(const std::filesystem::path& stem, const Case& c, const std::stri
     json["kind"] = KIND_NAMES[size_t(c.kind)];
     json["truth"] = TRUTH_NAMES[size_t(c.truth)];
     json["orbit"] = c.orbit;
+    const glm::dvec3& target = c.scene.cameras.at(0).target; // which glTF does not know
+    json["target"] = {target.x, target.y, target.z};
     for (const Move& move : c.moves) json["moves"].push_back(jsonOf(move));
     json["settings"] = passes::toJson(named.settings);
     json["commands"] = commandsOf(name, named);
@@ -363,6 +365,9 @@ Case readCase(const std::filesystem::path& file)
     passes::apply(c.settings, json.at("settings"));
     std::filesystem::path scene = file;
     c.scene = scene::loadGltf(scene.replace_extension(".gltf"), {.sky = false});
+    if (json.contains("target")) // older files are without
+        for (int i = 0; i < 3; ++i)
+            c.scene.cameras.at(0).target[i] = json["target"][size_t(i)].get<double>() - c.scene.origin[i];
     for (const Json& move : json.value("moves", Json::array())) {
         c.moves.push_back(moveOf(move));
         c.moves.back().center -= glm::vec3(c.scene.origin);

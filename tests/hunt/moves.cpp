@@ -118,14 +118,13 @@ class Drawing
         move.target = draw_.below(uint32_t(scene_.lights.size()));
         if (draw_.chance(0.6)) move.slide = float(draw_.logBetween(0.02, 1)) * distance_ * draw_.direction();
         if (draw_.chance(0.4)) move.turn = drawTurn(draw_);
-        if (draw_.chance(0.5))
-            move.color = draw_.chance(0.3) ? vec4(0) : vec4(draw_.color() * float(draw_.logBetween(0.1, 10)), 1);
+        if (draw_.chance(0.7)) move.color = vec4(change(), 1);
         return move;
     }
 
     Move paint()
     {
-        const Group group = any();
+        const Group group = any(0.6);
         const Material& own = scene_.materials[group.material];
         Move move = timed(Move::What::Paint);
         move.target = group.material;
@@ -138,7 +137,7 @@ class Drawing
         if (draw_.chance(0.4)) move.roughness = draw_.chance(0.1) ? 0 : float(draw_.logBetween(0.05, 1));
         if (draw_.chance(0.3)) move.metallic = draw_.chance(0.5) ? 1 - own.metallic : float(draw_.uniform());
         if (group.emits && draw_.chance(0.8))
-            move.emission *= draw_.chance(0.3) ? vec3(0) : draw_.color(0, 1) * float(draw_.logBetween(0.1, 10));
+            move.emission *= change();
         else if (!own.unlit && draw_.chance(0.2))
             move.emission = draw_.color(0, 1) * float(draw_.logBetween(0.1, 5));
         return move;
@@ -148,7 +147,7 @@ class Drawing
     {
         const double choice = draw_.uniform();
         Move move = timed(choice < 0.65 ? Move::What::Place : choice < 0.8 ? Move::What::Wobble : Move::What::Hide);
-        const Group group = any();
+        const Group group = any(0.3);
         move.target = group.material;
         move.center = 0.5f * (group.low + group.high);
         const float size = glm::distance(group.low, group.high), reach = std::min(size, distance_);
@@ -171,12 +170,14 @@ class Drawing
                 .reversed = draw_.chance(0.4)};
     }
 
-    // Often one that shines.
-    Group any()
+    // Of a light: out, or another color and power.
+    vec3 change() { return draw_.chance(0.3) ? vec3(0) : draw_.color(0, 1) * float(draw_.logBetween(0.05, 20)); }
+
+    Group any(double shines)
     {
         std::vector<Group> lamps;
         std::ranges::copy_if(groups_, std::back_inserter(lamps), &Group::emits);
-        const std::vector<Group>& from = !lamps.empty() && draw_.chance(0.3) ? lamps : groups_;
+        const std::vector<Group>& from = !lamps.empty() && draw_.chance(shines) ? lamps : groups_;
         return from[draw_.below(uint32_t(from.size()))];
     }
 
@@ -220,7 +221,7 @@ std::vector<Move> drawMoves(Draw& draw, const Scene& scene, uint32_t frames, boo
     std::vector<Move> moves;
     for (uint32_t count = draw.from(1, 3); moves.size() < count;)
         moves.push_back(paints && (moves.empty() || draw.chance(0.3)) ? drawing.paint()
-                        : !scene.lights.empty() && draw.chance(0.3)   ? drawing.light()
+                        : !scene.lights.empty() && draw.chance(0.4)   ? drawing.light()
                                                                       : drawing.triangles());
     return moves;
 }
