@@ -532,6 +532,10 @@ TEST_F(Hunter, FindsWhatIsPlanted)
 TEST_F(Hunter, FindsWhatIsPlantedWhereThingsMove)
 {
     Case c = hard();
+    c.settings.method = passes::Method::RestirPt; // little to compile
+    c.settings.shift = passes::Shift::Replay;
+    c.settings.spatial = 0;
+    c.settings.maxBounces = 1;
     const auto lamp = std::ranges::find_if(c.scene.materials, [](const auto& m) { return m.emission != glm::vec3(0); });
     ASSERT_NE(lamp, c.scene.materials.end());
     Move dims{.what = Move::What::Paint, .target = uint32_t(lamp - c.scene.materials.begin())};

@@ -68,7 +68,7 @@ void Stand::runs(uint64_t seed, uint64_t count, const TakeRun& takeRun)
             trial_->renderFrame();
         }
         take(*trial_, takeRun);
-        for (const auto& [stage, values] : trial_->stats().nonFinite) nonFinite_ += values;
+        for (const auto& [stage, values] : trial_->stats().nonFinite) nonFinite_[stage] += values;
     }
 }
 
@@ -108,7 +108,7 @@ void Stand::frames(uint64_t seed, uint64_t count, const TakeRun& takeRun)
         truth_->renderFrame();
         take(*truth_, takeRun);
     }
-    for (const auto& [stage, values] : truth_->stats().nonFinite) nonFinite_ += values;
+    for (const auto& [stage, values] : truth_->stats().nonFinite) nonFinite_[stage] += values;
 }
 
 namespace
