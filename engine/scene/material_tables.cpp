@@ -195,12 +195,13 @@ class Builder
         f.HAS_ROUGH |= high >= DIRAC_ROUGHNESS;
     }
 
-    // Of what an animation may make of it.
+    // Of what an animation may make of it. More metal and more light need all that less of them needs.
     void noteExtremes(Material material)
     {
-        for (const float extreme : {0.0f, 1.0f}) {
-            material.metallic = material.roughness = extreme;
-            material.emission = glm::vec3(extreme);
+        material.metallic = 1;
+        material.emission = glm::vec3(1);
+        for (const float roughness : {0.0f, 1.0f}) {
+            material.roughness = roughness;
             noteFeatures(plain(material));
         }
     }

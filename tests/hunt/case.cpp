@@ -120,11 +120,12 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
     scenes_ = kind_;
     if (kind_ == Kind::Moving) {
         using enum Kind;
-        scenes_ = draw.of({Panes, Sky, Scales, Edges, Lights, Lights, Things, Things, Things, Colors});
+        scenes_ = draw.of({Panes, Sky, Scales, Edges, Lights, Things, Things, Things, Things, Colors});
         paints_ = draw.chance(0.4);
     }
     truth_ = drawTruth(draw, kind_, wanted_.truth);
     palette_ = drawPalette(draw, scenes_, truth_);
+    palette_.emitters |= paints_;
     drawChoices(settings_, draw);
     using enum passes::Method;
     settings_.method = truth_ == Truth::Reference ? Pt
@@ -134,6 +135,7 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
     settings_.pixelFilter = draw.chance(0.75) ? passes::PixelFilter::Center : passes::PixelFilter::Box;
     const bool shallow = scenes_ == Kind::Sky || scenes_ == Kind::Panes || scenes_ == Kind::Lights;
     settings_.maxBounces = draw.chance(0.03) ? 0 : draw.from(1, shallow ? 3 : draw.chance(0.2) ? 8 : 4);
+    if (kind_ == Kind::Moving) settings_.maxBounces = std::max(settings_.maxBounces, 2u); // what is behind x_r
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
     insist(settings_);

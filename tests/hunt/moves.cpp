@@ -124,7 +124,7 @@ class Drawing
 
     Move paint()
     {
-        const Group group = any(0.6);
+        const Group group = any(0.75);
         const Material& own = scene_.materials[group.material];
         Move move = timed(Move::What::Paint);
         move.target = group.material;
@@ -165,8 +165,8 @@ class Drawing
     {
         using enum Move::When;
         return {.what = what,
-                .when = draw_.of({Steady, Steady, InTurn, InTurn, Until, Once}),
-                .frames = draw_.from(1, std::max(frames_ - 1, 1u)),
+                .when = draw_.of({Steady, InTurn, InTurn, Until, Once}),
+                .frames = draw_.chance(0.5) ? 1 : draw_.from(1, std::max(frames_ - 1, 1u)),
                 .reversed = draw_.chance(0.4)};
     }
 
@@ -184,8 +184,8 @@ class Drawing
     void place(Move& move, float reach)
     {
         if (draw_.chance(0.4)) move.turn = drawTurn(draw_);
-        if (draw_.chance(0.4)) {
-            const auto factor = [&] { return float(draw_.logBetween(0.3, 3)); };
+        if (draw_.chance(0.5)) {
+            const auto factor = [&] { return float(draw_.logBetween(0.2, 5)); };
             move.stretch = vec3(factor());
             if (draw_.chance(0.7)) move.stretch.y = factor(), move.stretch.z = factor();
             if (draw_.chance(0.25)) move.stretch[int(draw_.below(3))] *= -1;
