@@ -97,7 +97,7 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
         p.addRandomTextures(draw);
         p.baseColorTexture = true;
         break;
-    case Kind::Moving: CHECK(false && "its scenes are of another kind");
+    case Kind::Moving: take(0.5, {Glossy, RoughMetal, Mirror, ThinRough, SolidClear}); break;
     }
     p.sky = draw.chance(kind == Kind::Panes ? 0.7 : kind == Kind::Sealed ? 0.6 : 0.4);
     p.emitters = draw.chance(kind == Kind::Edges ? 0.7 : 0.5);
@@ -120,12 +120,12 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
     scenes_ = kind_;
     if (kind_ == Kind::Moving) {
         using enum Kind;
-        scenes_ = draw.of({Panes, Sky, Scales, Edges, Lights, Things, Things, Things, Things, Colors});
+        scenes_ = draw.of({Moving, Moving, Moving, Panes, Sky, Scales, Edges, Lights, Things, Things, Things, Colors});
         paints_ = draw.chance(0.4);
     }
     truth_ = drawTruth(draw, kind_, wanted_.truth);
     palette_ = drawPalette(draw, scenes_, truth_);
-    palette_.emitters |= paints_;
+    palette_.emitters |= paints_ || scenes_ == Kind::Moving;
     drawChoices(settings_, draw);
     using enum passes::Method;
     settings_.method = truth_ == Truth::Reference ? Pt

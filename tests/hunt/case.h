@@ -23,7 +23,7 @@ enum class Kind : uint32_t {
     Lights, // emitters, points, spots and suns of extreme sizes and powers
     Things, // anything
     Colors, // anything whose color changes from pixel to pixel
-    Moving  // the scenes of the others but Sealed: they move while they are seen
+    Moving  // rooms full of indirect light, and scenes of the others but Sealed: they move while they are seen
 };
 constexpr const char* KIND_NAMES[] = {"panes",  "sky",    "scales", "sealed", "edges",
                                       "lights", "things", "colors", "moving"};
@@ -72,14 +72,14 @@ class Session
 
     uint64_t seed_, index_;
     Wanted wanted_;
-    Kind kind_, scenes_; // the latter is one that rests
+    Kind kind_, scenes_; // the latter: whose scenes they are
     Truth truth_;
     Palette palette_;
     passes::Settings settings_;
     bool orthographic_ = false, paints_ = false;
 };
 
-// Scenes of a kind that rests, with a camera; complete() does the rest.
+// One kind's scenes, with a camera; complete() does the rest.
 scene::Scene drawScene(Kind kind, Truth truth, const Palette& palette, Draw& draw);
 
 } // namespace hunt
