@@ -15,7 +15,7 @@ namespace hunt
 namespace
 {
 
-constexpr double WEIGHTS[KINDS] = {3, 3, 3, 2, 2, 2, 5, 3};
+constexpr double WEIGHTS[KINDS] = {3, 3, 3, 2, 2, 2, 5, 3, 6};
 
 Kind drawKind(Draw& draw, const std::string& only)
 {
@@ -34,6 +34,7 @@ Kind drawKind(Draw& draw, const std::string& only)
 Truth drawTruth(Draw& draw, Kind kind, const std::string& only)
 {
     if (kind == Kind::Sealed) return Truth::Black;
+    if (kind == Kind::Moving) return Truth::PathTracer; // which shows what is tried there: temporal reuse
     if (only == TRUTH_NAMES[size_t(Truth::PathTracer)]) return Truth::PathTracer;
     if (only == TRUTH_NAMES[size_t(Truth::Reference)]) return Truth::Reference;
     if (!only.empty()) throw Error("There is no truth \"{}\" to choose; there are: pt, reference.", only);
@@ -96,6 +97,7 @@ Palette drawPalette(Draw& draw, Kind kind, Truth truth)
         p.addRandomTextures(draw);
         p.baseColorTexture = true;
         break;
+    case Kind::Moving: take(0.5, {Glossy, RoughMetal, Mirror, ThinRough, SolidClear}); break;
     }
     p.sky = draw.chance(kind == Kind::Panes ? 0.7 : kind == Kind::Sealed ? 0.6 : 0.4);
     p.emitters = draw.chance(kind == Kind::Edges ? 0.7 : 0.5);
@@ -115,8 +117,15 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
 {
     Draw draw{seed, index};
     kind_ = drawKind(draw, wanted_.kind);
+    scenes_ = kind_;
+    if (kind_ == Kind::Moving) {
+        using enum Kind;
+        scenes_ = draw.of({Moving, Moving, Moving, Panes, Sky, Scales, Edges, Lights, Things, Things, Things, Colors});
+        paints_ = draw.chance(0.4);
+    }
     truth_ = drawTruth(draw, kind_, wanted_.truth);
-    palette_ = drawPalette(draw, kind_, truth_);
+    palette_ = drawPalette(draw, scenes_, truth_);
+    palette_.emitters |= paints_ || scenes_ == Kind::Moving;
     drawChoices(settings_, draw);
     using enum passes::Method;
     settings_.method = truth_ == Truth::Reference ? Pt
@@ -124,8 +133,9 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
                            ? Pt
                            : draw.of({RestirPt, RgbRestir, RgbRestir, GroupedRestir});
     settings_.pixelFilter = draw.chance(0.75) ? passes::PixelFilter::Center : passes::PixelFilter::Box;
-    const bool shallow = kind_ == Kind::Sky || kind_ == Kind::Panes || kind_ == Kind::Lights;
+    const bool shallow = scenes_ == Kind::Sky || scenes_ == Kind::Panes || scenes_ == Kind::Lights;
     settings_.maxBounces = draw.chance(0.03) ? 0 : draw.from(1, shallow ? 3 : draw.chance(0.2) ? 8 : 4);
+    if (kind_ == Kind::Moving) settings_.maxBounces = std::max(settings_.maxBounces, 2u); // what is behind x_r
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
     insist(settings_);
@@ -144,7 +154,7 @@ Case Session::draw(uint64_t place) const
     CHECK(place < SESSION_CASES);
     Draw draw{seed_, index_, place + 1};
     Case c{.number = index_ * SESSION_CASES + place, .kind = kind_, .truth = truth_, .settings = settings_};
-    c.scene = drawScene(kind_, truth_, palette_, draw);
+    c.scene = drawScene(scenes_, truth_, palette_, draw);
     palette_.complete(c.scene, draw);
     scene::Camera& camera = c.scene.cameras.at(0);
     if (orthographic_) {
@@ -156,7 +166,7 @@ Case Session::draw(uint64_t place) const
     if (draw.chance(0.05)) s.width = draw.from(3, 12);
     s.frames = 1;
     if (s.method == passes::Method::Pt) return c;
-    s.temporal = draw.chance(0.8);
+    s.temporal = draw.chance(0.8) || kind_ == Kind::Moving;
     s.spatial = draw.chance(0.4) ? 0 : draw.chance(0.8) ? draw.from(1, 3) : draw.from(4, 8);
     s.spatialRadius = draw.chance(0.5) ? 0 : float(draw.between(1, 6));
     s.maxConfidence = draw.chance(0.3) ? 20 : uint32_t(std::exp2(draw.between(0, 20.001)));
@@ -164,7 +174,14 @@ Case Session::draw(uint64_t place) const
     s.frames = !s.temporal ? 1 : draw.chance(0.1) ? draw.from(8, 16) : draw.from(2, 5);
     if (s.temporal && draw.chance(0.5)) c.orbit = draw.chance(0.5) ? draw.logBetween(1e-3, 3) : draw.between(-3, 3);
     insist(s);
+    if (kind_ == Kind::Moving && s.temporal) c.moves = drawMoves(draw, c.scene, s.frames, paints_);
     return c;
+}
+
+scene::Scene Case::sceneIn(uint32_t frame) const
+{
+    CHECK_LT(frame, settings.frames);
+    return posed(scene, moves, settings.frames - 1 - frame);
 }
 
 std::string Case::describe() const
@@ -178,6 +195,8 @@ std::string Case::describe() const
         if (mine[i] != usual[i] && mine[i].first != "average")
             text += fmt::format(" --{} {}", mine[i].first, mine[i].second);
     if (orbit != 0) text += fmt::format(" --orbit {}", orbit);
+    for (const Move& move : moves)
+        text += fmt::format(", {} {} {}", WHAT_NAMES[size_t(move.what)], move.target, WHEN_NAMES[size_t(move.when)]);
     return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/scene/scene.h"
 #include "passes/settings.h"
+#include "tests/hunt/moves.h"
 #include "tests/hunt/palette.h"
 
 namespace hunt
@@ -21,9 +22,11 @@ enum class Kind : uint32_t {
     Edges,  // pixel centers look exactly at edges, corners and diagonals
     Lights, // emitters, points, spots and suns of extreme sizes and powers
     Things, // anything
-    Colors  // anything whose color changes from pixel to pixel
+    Colors, // anything whose color changes from pixel to pixel
+    Moving  // rooms full of indirect light, and scenes of the others but Sealed: they move while they are seen
 };
-constexpr const char* KIND_NAMES[] = {"panes", "sky", "scales", "sealed", "edges", "lights", "things", "colors"};
+constexpr const char* KIND_NAMES[] = {"panes",  "sky",    "scales", "sealed", "edges",
+                                      "lights", "things", "colors", "moving"};
 constexpr uint32_t KINDS = uint32_t(std::size(KIND_NAMES));
 
 // What the mean of many runs is compared with.
@@ -41,7 +44,9 @@ struct Case {
     scene::Scene scene;
     passes::Settings settings; // of the method on trial
     double orbit = 0;          // degrees a frame; 0: the camera rests
+    std::vector<Move> moves;   // of the scene, which is stated at rest
 
+    scene::Scene sceneIn(uint32_t frame) const; // of settings.frames
     std::string describe() const;
 };
 
@@ -67,11 +72,11 @@ class Session
 
     uint64_t seed_, index_;
     Wanted wanted_;
-    Kind kind_;
+    Kind kind_, scenes_; // the latter: whose scenes they are
     Truth truth_;
     Palette palette_;
     passes::Settings settings_;
-    bool orthographic_ = false;
+    bool orthographic_ = false, paints_ = false;
 };
 
 // One kind's scenes, with a camera; complete() does the rest.

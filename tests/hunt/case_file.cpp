@@ -1,6 +1,7 @@
 #include "tests/hunt/case_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -240,9 +241,67 @@ void write(const std::filesystem::path& file, const std::string& text)
     files::writeAtomically(file, std::as_bytes(std::span(text)));
 }
 
-// What `trichrome render` takes: the method on trial after its frames, and many frames of the path tracer.
+template <int N>
+std::array<float, size_t(N)> listOf(const glm::vec<N, float>& v)
+{
+    std::array<float, size_t(N)> list;
+    for (int i = 0; i < N; ++i) list[size_t(i)] = v[i];
+    return list;
+}
+template <int N>
+void readInto(glm::vec<N, float>& v, const Json& list)
+{
+    for (int i = 0; i < N; ++i) v[i] = list.at(size_t(i)).get<float>();
+}
+
+Json jsonOf(const Move& move)
+{
+    return {{"what", WHAT_NAMES[size_t(move.what)]},
+            {"when", WHEN_NAMES[size_t(move.when)]},
+            {"frames", move.frames},
+            {"reversed", move.reversed},
+            {"target", move.target},
+            {"center", listOf(move.center)},
+            {"slide", listOf(move.slide)},
+            {"turn", listOf(move.turn)},
+            {"stretch", listOf(move.stretch)},
+            {"color", listOf(move.color)},
+            {"emission", listOf(move.emission)},
+            {"roughness", move.roughness},
+            {"metallic", move.metallic}};
+}
+
+// Throws Error.
+uint32_t indexOf(const auto& names, const Json& name)
+{
+    const auto at = std::ranges::find(names, name.get<std::string>());
+    if (at == std::end(names)) throw Error("\"{}\" in the file of a case is unknown.", name.get<std::string>());
+    return uint32_t(at - std::begin(names));
+}
+
+Move moveOf(const Json& json)
+{
+    Move move{.what = Move::What(indexOf(WHAT_NAMES, json.at("what"))),
+              .when = Move::When(indexOf(WHEN_NAMES, json.at("when"))),
+              .frames = json.at("frames").get<uint32_t>(),
+              .reversed = json.at("reversed").get<bool>(),
+              .target = json.at("target").get<uint32_t>(),
+              .roughness = json.at("roughness").get<float>(),
+              .metallic = json.at("metallic").get<float>()};
+    readInto(move.center, json.at("center"));
+    readInto(move.slide, json.at("slide"));
+    readInto(move.turn, json.at("turn"));
+    readInto(move.stretch, json.at("stretch"));
+    readInto(move.color, json.at("color"));
+    readInto(move.emission, json.at("emission"));
+    return move;
+}
+
+// What `trichrome render` takes: the method on trial after its frames, and many frames of the path tracer. It does not
+// know of moves.
 std::vector<std::string> commandsOf(const std::string& name, const Case& c)
 {
+    if (!c.moves.empty()) return {fmt::format("hunt --file {}.json", name)};
     const auto usual = passes::toText(passes::Settings{});
     const auto line = [&](passes::Settings settings, const std::string& output, double orbit) {
         std::string text = fmt::format("trichrome render {}.gltf -o {}", name, output);
@@ -286,6 +345,9 @@ void writeCase(const std::filesystem::path& stem, const Case& c, const std::stri
     json["kind"] = KIND_NAMES[size_t(c.kind)];
     json["truth"] = TRUTH_NAMES[size_t(c.truth)];
     json["orbit"] = c.orbit;
+    const glm::dvec3& target = c.scene.cameras.at(0).target; // which glTF does not know
+    json["target"] = {target.x, target.y, target.z};
+    for (const Move& move : c.moves) json["moves"].push_back(jsonOf(move));
     json["settings"] = passes::toJson(named.settings);
     json["commands"] = commandsOf(name, named);
     write(stem.string() + ".json", json.dump(2) + "\n");
@@ -296,18 +358,20 @@ Case readCase(const std::filesystem::path& file)
     const std::vector<std::byte> bytes = files::read(file);
     const Json json = Json::parse(reinterpret_cast<const char*>(bytes.data()),
                                   reinterpret_cast<const char*>(bytes.data()) + bytes.size());
-    const auto indexOf = [&](const auto& names, const std::string& name) {
-        const auto at = std::ranges::find(names, name);
-        if (at == std::end(names)) throw Error("\"{}\" in {} is unknown.", name, file.string());
-        return uint32_t(at - std::begin(names));
-    };
     Case c;
-    c.kind = Kind(indexOf(KIND_NAMES, json.at("kind").get<std::string>()));
-    c.truth = Truth(indexOf(TRUTH_NAMES, json.at("truth").get<std::string>()));
+    c.kind = Kind(indexOf(KIND_NAMES, json.at("kind")));
+    c.truth = Truth(indexOf(TRUTH_NAMES, json.at("truth")));
     c.orbit = json.at("orbit").get<double>();
     passes::apply(c.settings, json.at("settings"));
     std::filesystem::path scene = file;
     c.scene = scene::loadGltf(scene.replace_extension(".gltf"), {.sky = false});
+    if (json.contains("target")) // older files are without
+        for (int i = 0; i < 3; ++i)
+            c.scene.cameras.at(0).target[i] = json["target"][size_t(i)].get<double>() - c.scene.origin[i];
+    for (const Json& move : json.value("moves", Json::array())) {
+        c.moves.push_back(moveOf(move));
+        c.moves.back().center -= glm::vec3(c.scene.origin);
+    }
     if (!c.settings.environment.empty())
         scene::setEnvironment(c.scene, (file.parent_path() / c.settings.environment).string(),
                               c.settings.environmentScale);

@@ -1,6 +1,6 @@
 #pragma once
-// A case as files that the program reads: NAME.gltf, NAME.exr for a sky, and NAME.json with the settings and the
-// command lines that show it.
+// A case as files that the program reads: NAME.gltf, NAME.exr for a sky, and NAME.json with the settings, what moves,
+// and the command lines that show it.
 
 #include <filesystem>
 #include <string>

@@ -26,7 +26,7 @@ using hunt::Case, hunt::Finding;
 struct Options {
     double minutes = 5, shrinkSeconds = 120, effort = 1;
     uint64_t seed = 1, most = 0; // most finds; 0: no limit
-    std::string device, plant, out = "build/hunt";
+    std::string device, plant, out = "build/hunt", file;
     hunt::Wanted wanted;
     int64_t number = -1;
     bool verbose = false;
@@ -54,6 +54,11 @@ class Hunt
 
     uint64_t run()
     {
+        if (!options_.file.empty()) {
+            Place place(descriptor(false));
+            tryCase(place, hunt::readCase(options_.file));
+            return found_;
+        }
         const bool one = options_.number >= 0;
         const uint64_t first = one ? uint64_t(options_.number) / hunt::SESSION_CASES : 0;
         for (uint64_t index = first; !over(); ++index) {
@@ -101,7 +106,8 @@ class Hunt
         suspicious_ += finding.stages > 1;
         undecided_ += finding.fault == hunt::Fault::Undecided;
         found_ += finding.found();
-        if (finding.found() || options_.verbose || options_.number >= 0 || finding.fault == hunt::Fault::Undecided)
+        if (finding.found() || options_.verbose || options_.number >= 0 || !options_.file.empty() ||
+            finding.fault == hunt::Fault::Undecided)
             say("{:.1f} min, {:.1f} min of processors: {}\n    {}", secondsSince(start_) / 60,
                 double(std::clock()) / CLOCKS_PER_SEC / 60, c.describe(), finding.describe());
         if (finding.found())
@@ -190,6 +196,7 @@ int main(int argc, char** argv)
     app.add_option(
         "--case", options.number,
         "One case of that seed (and --only, --against, --setting, --effort), and no other; its files are written.");
+    app.add_option("--file", options.file, "The case of a .json that was written, and no other.");
     app.add_option("--plant", options.plant, "An error to plant in the shaders: would it be found?");
     app.add_option("--most", options.most, "Ends after so many finds.");
     app.add_option("--shrink", options.shrinkSeconds, "How long a find may be made smaller, in seconds.");

@@ -194,8 +194,11 @@ TEST(Cases, OfASessionCompileOnce)
         const Session session(9, index);
         const auto featuresOf = [&](uint64_t place) {
             const Case c = session.draw(place);
-            const scene::SceneFeatures f = scene::makeSceneTables(c.scene, UINT64_MAX).features;
-            return passes::makeVariant(f, passes::Settings{}, false, {});
+            const bool moves = !c.moves.empty();
+            const scene::SceneFeatures f =
+                moves ? scene::MovingTables(withMotion(c.scene, c.moves), UINT64_MAX).rest().features
+                      : scene::makeSceneTables(c.scene, UINT64_MAX).features;
+            return passes::makeVariant(f, passes::Settings{}, false, {}, moves);
         };
         const passes::Variant first = featuresOf(0);
         for (uint64_t place = 1; place < 4; ++place)
@@ -358,6 +361,27 @@ TEST_F(Hunter, FindsWhatIsPlanted)
     shaders.plant(support::plantedError("WeightTimes1_02"));
     gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
     const Finding finding = tried(planted, hard());
+    EXPECT_EQ(finding.fault, Fault::Different) << finding.describe();
+}
+
+// As the program was before it knew of two worlds.
+TEST_F(Hunter, FindsWhatIsPlantedWhereThingsMove)
+{
+    Case c = hard();
+    c.settings.method = passes::Method::RestirPt; // little to compile
+    c.settings.shift = passes::Shift::Replay;
+    c.settings.spatial = 0;
+    c.settings.maxBounces = 1;
+    const auto lamp = std::ranges::find_if(c.scene.materials, [](const auto& m) { return m.emission != glm::vec3(0); });
+    ASSERT_NE(lamp, c.scene.materials.end());
+    Move dims{.what = Move::What::Paint, .target = uint32_t(lamp - c.scene.materials.begin())};
+    dims.emission = 0.1f * lamp->emission;
+    c.moves = {dims};
+    ASSERT_FALSE(tried(device(), c).found());
+    support::PlantedShaders shaders("hunter_moves");
+    shaders.plant(support::plantedError("PreviousWorldForgotten"));
+    gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
+    const Finding finding = tried(planted, c);
     EXPECT_EQ(finding.fault, Fault::Different) << finding.describe();
 }
 

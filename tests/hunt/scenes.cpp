@@ -319,6 +319,16 @@ void things(Builder& b)
     b.look({draw.between(-1.5, 1.5), draw.between(0.5, 2.2), 3.4}, {0, 0.8, 0}, draw.between(25, 50));
 }
 
+void room(Builder& b)
+{
+    Draw& draw = b.draw;
+    scene::addBox(b.scene, b.wall(), {-2, 0, -2}, {2, 2.8, 4});
+    someThings(b, 3);
+    b.lamp({draw.between(-1, 1), 2.7, draw.between(-1, 1)}, draw.between(0.4, 1.5), draw.logBetween(1, 10), {0, 0, 0});
+    b.lights({0, 0.8, 0}, 1.2, false);
+    b.look({draw.between(-1.5, 1.5), draw.between(0.5, 2.2), 3.4}, {0, 0.8, 0}, draw.between(25, 50));
+}
+
 void lights(Builder& b)
 {
     Draw& draw = b.draw;
@@ -342,6 +352,7 @@ Scene drawScene(Kind kind, Truth truth, const Palette& palette, Draw& draw)
     case Kind::Lights: lights(b); break;
     case Kind::Things:
     case Kind::Colors: things(b); break;
+    case Kind::Moving: room(b); break;
     }
     return std::move(b.scene);
 }

@@ -10,9 +10,10 @@ namespace
 
 using scene::Material, scene::Scene;
 
-// Vertices, materials and images that nothing uses any more go.
-void tidy(Scene& scene)
+// Vertices and materials that nothing uses any more go, and so does what moved them.
+void tidy(Case& c)
 {
+    Scene& scene = c.scene;
     std::vector<uint32_t> newVertex(scene.positions.size(), scene::NONE),
         newMaterial(scene.materials.size(), scene::NONE);
     std::vector<uint32_t> kept;
@@ -45,6 +46,16 @@ void tidy(Scene& scene)
     keep(scene.uv1);
     keep(scene.colors);
     scene.materials = materials;
+    for (Move& move : c.moves)
+        if (move.what != Move::What::Light) move.target = newMaterial[move.target];
+    std::erase_if(c.moves, [](const Move& move) { return move.target == scene::NONE; });
+}
+
+void eraseLight(Case& c, uint32_t light)
+{
+    c.scene.lights.erase(c.scene.lights.begin() + light);
+    std::erase_if(c.moves, [&](const Move& m) { return m.what == Move::What::Light && m.target == light; });
+    for (Move& move : c.moves) move.target -= move.what == Move::What::Light && move.target > light;
 }
 
 bool hasNoArea(const Scene& scene, const scene::Triangle& triangle)
@@ -65,12 +76,13 @@ class Shrinker
     {
         attempt([](Case& c) {
             std::erase_if(c.scene.triangles, [&](const scene::Triangle& t) { return hasNoArea(c.scene, t); });
-            tidy(c.scene);
+            tidy(c);
         });
         bool smaller = true;
         while (smaller && !stop_()) {
             const Case before = case_;
             settings();
+            moves();
             lights();
             triangles();
             materials();
@@ -84,7 +96,7 @@ class Shrinker
         size_t unusual = 0;
         for (const Material& m : c.scene.materials) unusual += m.roughness != 1 || m.specular != 0 || m.metallic != 0;
         return c.scene.triangles.size() + c.scene.lights.size() + c.scene.environment.radiance.size() + unusual +
-               c.settings.spatial + c.settings.frames + c.settings.maxBounces + (c.orbit != 0);
+               c.settings.spatial + c.settings.frames + c.settings.maxBounces + (c.orbit != 0) + c.moves.size();
     }
 
     // Takes the change when the case still fails.
@@ -126,10 +138,28 @@ class Shrinker
         }
     }
 
+    void moves()
+    {
+        for (size_t i = case_.moves.size(); i-- > 0;)
+            if (!attempt([&](Case& c) { c.moves.erase(c.moves.begin() + std::ptrdiff_t(i)); })) simplify(i);
+    }
+
+    void simplify(size_t i)
+    {
+        const auto without = [&](auto Move::*part) {
+            const auto none = Move().*part;
+            if (case_.moves[i].*part != none) attempt([&](Case& c) { c.moves[i].*part = none; });
+        };
+        without(&Move::reversed);
+        if (case_.moves[i].what == Move::What::Wobble) return; // the rest is one
+        without(&Move::slide);
+        without(&Move::turn);
+        without(&Move::stretch);
+    }
+
     void lights()
     {
-        for (size_t i = case_.scene.lights.size(); i-- > 0;)
-            attempt([&](Case& c) { c.scene.lights.erase(c.scene.lights.begin() + std::ptrdiff_t(i)); });
+        for (uint32_t i = uint32_t(case_.scene.lights.size()); i-- > 0;) attempt([&](Case& c) { eraseLight(c, i); });
         if (case_.scene.environment.width > 0) {
             attempt([](Case& c) { c.scene.environment = {}; });
             if (case_.scene.environment.radiance.size() > 1)
@@ -146,7 +176,7 @@ class Shrinker
                     auto& all = c.scene.triangles;
                     const auto begin = all.begin() + std::ptrdiff_t(std::min(first * part, all.size()));
                     all.erase(begin, begin + std::ptrdiff_t(std::min(part, size_t(all.end() - begin))));
-                    tidy(c.scene);
+                    tidy(c);
                 });
     }
 

@@ -32,16 +32,20 @@ passes::Settings pathTracing(passes::Settings settings)
 
 Stand::Stand(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c)
     : case_(c), cameraAt_(passes::cameraOrbit(c.scene.cameras.at(0), c.orbit)),
-      trial_(std::make_unique<passes::Renderer>(device, c.scene, c.settings, std::function<void(double)>(),
-                                                scene::FeatureSet::Needed, batchOf(c.settings, PIXELS_AT_ONCE),
-                                                pipelines))
+      trial_(std::make_unique<passes::Renderer>(device, c.moves.empty() ? c.scene : withMotion(c.scene, c.moves),
+                                                c.settings, std::function<void(double)>(), scene::FeatureSet::Needed,
+                                                batchOf(c.settings, PIXELS_AT_ONCE), pipelines, !c.moves.empty()))
 {
+    for (uint32_t frame = 0; !c.moves.empty() && frame < c.settings.frames; ++frame) poses_.push_back(c.sceneIn(frame));
 }
 
 double Stand::chancesPerRun() const
 {
     const passes::Settings& s = case_.settings;
-    return s.method == passes::Method::Pt || !s.temporal ? 1 : double(std::min(s.frames, s.maxConfidence));
+    // Of what moves, frames before the last may have seen nothing.
+    return s.method == passes::Method::Pt || !s.temporal || !case_.moves.empty()
+               ? 1
+               : double(std::min(s.frames, s.maxConfidence));
 }
 
 void Stand::take(passes::Renderer& renderer, const TakeRun& takeRun)
@@ -56,23 +60,44 @@ void Stand::runs(uint64_t seed, uint64_t count, const TakeRun& takeRun)
     passes::Settings settings = case_.settings;
     for (uint64_t done = 0; done < count; done += batch()) {
         settings.seed = Draw::mix(seed + done);
-        trial_->setCamera(cameraAt_(0));
+        showFrame(0);
         trial_->apply(settings);
         trial_->reset();
         for (uint32_t frame = 0; frame < settings.frames; ++frame) {
-            if (case_.orbit != 0) trial_->setCamera(cameraAt_(frame));
+            showFrame(frame);
             trial_->renderFrame();
         }
         take(*trial_, takeRun);
-        for (const auto& [stage, values] : trial_->stats().nonFinite) nonFinite_ += values;
+        for (const auto& [stage, values] : trial_->stats().nonFinite) nonFinite_[stage] += values;
     }
+}
+
+void Stand::showFrame(uint32_t frame)
+{
+    trial_->setCamera(cameraAt_(frame));
+    if (poses_.empty()) return;
+    // While nothing moves the world stays the same one, as where an animation pauses.
+    const auto amounts = [&](uint32_t of) {
+        std::vector<float> list;
+        for (const Move& move : case_.moves) list.push_back(move.amount(case_.settings.frames - 1 - of));
+        return list;
+    };
+    uint32_t since = frame;
+    while (since > 0 && amounts(since - 1) == amounts(frame)) --since;
+    trial_->setScene(poses_[frame], since);
 }
 
 void Stand::frames(uint64_t seed, uint64_t count, const TakeRun& takeRun)
 {
     if (!truth_) {
         const passes::Settings settings = pathTracing(case_.settings);
-        truth_ = std::make_unique<passes::Renderer>(*trial_, settings, batchOf(settings, PIXELS_AT_ONCE));
+        const uint32_t runs = batchOf(settings, PIXELS_AT_ONCE);
+        // Of a scene that moves the truth is a scene that never did.
+        truth_ = poses_.empty()
+                     ? std::make_unique<passes::Renderer>(*trial_, settings, runs)
+                     : std::make_unique<passes::Renderer>(trial_->device(), poses_.back(), settings,
+                                                          std::function<void(double)>(), scene::FeatureSet::Needed,
+                                                          runs, trial_->pipelines());
     }
     passes::Settings settings = pathTracing(case_.settings);
     settings.seed = Draw::mix(seed);
@@ -83,7 +108,7 @@ void Stand::frames(uint64_t seed, uint64_t count, const TakeRun& takeRun)
         truth_->renderFrame();
         take(*truth_, takeRun);
     }
-    for (const auto& [stage, values] : truth_->stats().nonFinite) nonFinite_ += values;
+    for (const auto& [stage, values] : truth_->stats().nonFinite) nonFinite_[stage] += values;
 }
 
 namespace

@@ -2,10 +2,12 @@
 // Where a case is rendered: the method on trial and its truth, run by run.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/gpu/gpu.h"
 #include "passes/camera_path.h"
@@ -36,15 +38,17 @@ class Stand
 
     uint32_t batch() const { return trial_->runs(); } // runs that are rendered at once
     double chancesPerRun() const;                     // frames that a run of the trial rests on
-    uint64_t nonFinite() const { return nonFinite_; } // values so far
+    const std::map<std::string, uint64_t>& nonFinite() const { return nonFinite_; } // values so far, by stage
 
   private:
+    void showFrame(uint32_t frame); // camera and pose
     void take(passes::Renderer& renderer, const TakeRun& take);
 
     const Case& case_;
     passes::CameraAt cameraAt_;
+    std::vector<scene::Scene> poses_; // by frame, of a case that moves
     std::unique_ptr<passes::Renderer> trial_, truth_;
-    uint64_t nonFinite_ = 0;
+    std::map<std::string, uint64_t> nonFinite_;
 };
 
 } // namespace hunt

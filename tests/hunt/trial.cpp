@@ -91,9 +91,12 @@ class Examination
     Finding run()
     {
         Finding finding = case_.truth == Truth::Black ? black() : differences();
-        if (stand_.nonFinite() > 0) {
+        std::vector<std::string> broken;
+        for (const auto& [stage, values] : stand_.nonFinite())
+            if (values > 0) broken.push_back(fmt::format("{} values in {}", values, stage));
+        if (!broken.empty()) {
             finding.fault = Fault::NotFinite;
-            finding.where = fmt::format("{} values", stand_.nonFinite());
+            finding.where = fmt::format("{}", fmt::join(broken, ", "));
         } else if (!finding.found() && effort_.repeats && !repeats()) {
             finding.fault = Fault::NotRepeatable;
         }
