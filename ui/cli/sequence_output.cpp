@@ -81,7 +81,7 @@ void SequenceOutput::adjust(passes::Settings& settings, const SettingsOptions& o
 
 std::filesystem::path SequenceOutput::fileOf(uint64_t rendered) const
 {
-    if (rendered < warmUp_) return {};
+    if (!given() || rendered < warmUp_) return {};
     std::smatch number;
     std::regex_search(pattern_, number, NUMBER);
     const int width = number[2].matched ? std::stoi(number[2]) : 1;

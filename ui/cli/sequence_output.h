@@ -27,7 +27,7 @@ class SequenceOutput
 
     // The number of a frame by its place among those rendered, warm-up first; negative: before the first of all.
     int64_t numberOf(uint64_t rendered) const { return first_ - int64_t(warmUp_) + int64_t(rendered); }
-    // Nothing for a frame of the warm-up.
+    // Nothing for a frame of the warm-up, and where none is asked for.
     std::filesystem::path fileOf(uint64_t rendered) const;
 
     // As metadata, like settings: what decides which frame has which history.
