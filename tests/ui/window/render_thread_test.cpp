@@ -224,14 +224,17 @@ TEST(RenderThread, StudiesWaitUntilTheSceneRestsAndAreOfThatTime)
     EXPECT_FALSE(thread.findings()->reference);
     EXPECT_FALSE(thread.findings()->curves[ui::A]);
     order.playing = false;
+    uint64_t before = 0; // the reference
     const auto reference = [&](double time) {
         order.scene.time = time;
         thread.order(order);
         EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->order == order; }));
         EXPECT_TRUE(comes([&] {
             const auto findings = thread.findings();
-            return findings->reference && findings->curves[ui::A] && findings->floors[ui::A];
+            return findings->reference && findings->reference->converging != before && findings->curves[ui::A] &&
+                   findings->floors[ui::A];
         }));
+        before = thread.findings()->reference->converging;
         return thread.findings()->reference->picture.pixels.at(9 * 32 + 15);
     };
     EXPECT_EQ(reference(1), glm::vec3(0));
