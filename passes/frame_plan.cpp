@@ -30,13 +30,13 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
     return plan;
 }
 
-StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves)
+StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves, bool sceneMoves)
 {
     StageList stages;
     for (const Settings& settings : list) {
         const FrameState frame{.history = settings.temporal,
-                               .sameView = !cameraMoves && !scene.moves() && scene.viewRepeats(settings),
-                               .moved = scene.moves()};
+                               .sameView = !cameraMoves && !sceneMoves && scene.viewRepeats(settings),
+                               .moved = sceneMoves};
         for (const PlannedStage& stage : framePlan(scene, settings, 1))
             if (stage.runs(frame)) stages.emplace_back(stage.shader, stage.variant);
     }

@@ -32,6 +32,7 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
 
 // What frames with any of these settings compile, for those who compile ahead.
 using StageList = std::vector<std::pair<std::string, Variant>>;
-StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves = false);
+StageList stagesOf(const SceneOnDevice& scene, std::span<const Settings> list, bool cameraMoves = false,
+                   bool sceneMoves = false);
 
 } // namespace passes

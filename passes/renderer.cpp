@@ -66,13 +66,14 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Setting
 
 Renderer::Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs)
     : device_(sibling.device_), settings_(settings), runs_(runs), scene_(sibling.scene_),
-      hasPose_(!sibling.scene_->moves())
+      sceneSeconds_(sibling.sceneSeconds_)
 {
-    if (!hasPose_) scene_ = std::make_shared<SceneOnDevice>(*sibling.scene_);
+    if (scene_->moves()) scene_ = std::make_shared<SceneOnDevice>(*scene_);
     CHECK(settings.environment == sibling.settings_.environment);
     CHECK(settings.environmentScale == sibling.settings_.environmentScale);
     createBuffers();
     frame_.camera = frame_.previousCamera = sibling.frame_.camera;
+    frame_.world = lastWorld_ = sibling.frame_.world;
     createStages();
 }
 

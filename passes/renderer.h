@@ -67,8 +67,8 @@ class Renderer
              scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1,
              std::shared_ptr<PipelinePool> pipelines = nullptr, bool moves = false);
     // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
-    // that methods can be compared in turns. The environment must be the sibling's. If the scene moves, it has no pose
-    // before setScene() gives it one.
+    // that methods can be compared in turns. The environment must be the sibling's. If the scene moves, it has the
+    // sibling's pose until setScene() gives it another.
     Renderer(const Renderer& sibling, const Settings& settings, uint32_t runs = 1);
 
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight

@@ -21,7 +21,7 @@ struct SceneOnDevice {
     SceneOnDevice(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
                   scene::FeatureSet featureSet, const std::function<void(double)>& bvhProgress,
                   std::shared_ptr<PipelinePool> pipelines, bool moves = false);
-    // Another one of a scene that moves, which has no pose yet; textures and pipelines are shared.
+    // Another one of a scene that moves, in the same poses until show(); textures and pipelines are shared.
     SceneOnDevice(const SceneOnDevice& other);
     SceneOnDevice& operator=(const SceneOnDevice&) = delete;
 

@@ -9,14 +9,18 @@
 namespace passes
 {
 
+double playedAt(double seconds, double length, bool loop)
+{
+    if (!loop || length == 0) return std::clamp(seconds, 0.0, length);
+    const double turned = std::fmod(seconds, length);
+    return turned < 0 ? turned + length : turned;
+}
+
 double Playback::secondsAt(int64_t frame, const scene::Motion& motion) const
 {
     double length = 0;
     for (const uint32_t animation : animations) length = std::max(length, motion.animations.at(animation).seconds);
-    const double seconds = start + double(frame) * step;
-    if (!loop || length == 0) return std::clamp(seconds, 0.0, length);
-    const double turned = std::fmod(seconds, length);
-    return turned < 0 ? turned + length : turned;
+    return playedAt(start + double(frame) * step, length, loop);
 }
 
 Sequence::Sequence(scene::Scene& scene, Playback playback, uint32_t camera, CameraAt cameraAt)

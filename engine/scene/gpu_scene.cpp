@@ -91,7 +91,17 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables)
 GpuScene::GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other)
     : GpuScene(device, tables.last(), tables.most(), 2, other ? other->texels_ : nullptr)
 {
-    if (other) contents_ = other->contents_; // textures are forgotten by now
+    if (!other) return;
+    contents_ = other->contents_; // textures are forgotten by now
+    worlds_ = other->worlds_;
+    versions_ = other->versions_;
+    gpu::CommandEncoder encoder = device.createCommandEncoder("poses");
+    encoder.copy(other->nodes_, nodes_);
+    encoder.copy(other->triangles_, triangles_);
+    encoder.copy(other->attributes_, attributes_);
+    encoder.copy(other->sceneData_, sceneData_);
+    encoder.copy(other->uniform_, uniform_);
+    device.queue().wait(device.queue().submit(std::move(encoder)));
 }
 
 void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose, const TableChanges& changes)

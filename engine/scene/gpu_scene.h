@@ -27,8 +27,8 @@ class GpuScene
   public:
     // Uploads at once; the CPU copies of the tables can go afterwards.
     GpuScene(gpu::Device& device, const SceneTables& tables);
-    // Of a scene that moves: what all poses share; write() fills both worlds. `other`: one of the same scene, which has
-    // its textures already.
+    // Of a scene that moves: what all poses share; write() fills both worlds. With `other`, of the same scene: its
+    // textures, and the poses that it has.
     GpuScene(gpu::Device& device, const MovingTables& tables, const GpuScene* other = nullptr);
 
     // From the next submission on; `world`: 0 or 1.

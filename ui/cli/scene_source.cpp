@@ -38,15 +38,7 @@ scene::Scene load(const SceneSource& source, bool sky, const LoadProgress& progr
 
 void animate(scene::Scene& scene, const SceneSource& source)
 {
-    const size_t count = scene.motion ? scene.motion->animations.size() : 0;
-    if (!source.time && source.animation.empty()) {
-        if (count > 0)
-            scene.warnings.push_back(
-                fmt::format("The scene has {} animation{} and is shown at rest: --time SECONDS shows it as it is at "
-                            "that time.",
-                            count, count == 1 ? "" : "s"));
-        return;
-    }
+    if (source.atRest()) return;
     const std::vector<uint32_t> chosen = chosenAnimations(scene, source);
     if (chosen.empty() && source.animation != "off")
         scene.warnings.push_back("The scene has no animation: it is the same at every --time.");
@@ -109,6 +101,10 @@ scene::Scene openScene(const SceneSource& source, const passes::Settings& settin
     scene::Scene scene = openScene(source, settings,
                                    [&](const std::string& what, double fraction) { progress.show(what, fraction, 1); });
     progress.clear();
+    if (const size_t count = scene.motion ? scene.motion->animations.size() : 0; count > 0 && source.atRest())
+        scene.warnings.push_back(fmt::format(
+            "The scene has {} animation{} and is shown at rest: --time SECONDS shows it as it is at that time.", count,
+            count == 1 ? "" : "s"));
     for (const std::string& warning : scene.warnings) std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     return scene;
 }

@@ -22,6 +22,7 @@ struct SceneSource {
     std::optional<double> time; // seconds; none: at rest, or 0 where an animation is named
     std::string animation;      // a name, an index, "all" or "off"; empty: all where a time is given
 
+    bool atRest() const { return !time && animation.empty(); }
     // The pose, as metadata, like settings.
     std::vector<std::pair<std::string, std::string>> toText() const;
 

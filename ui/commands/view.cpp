@@ -16,11 +16,17 @@ namespace
 
 struct ViewCommand {
     WindowOptions window{.order = {.scene = {.name = "hall"}}};
+    Play play;
     SettingsOptions settings;
 
     int run()
     {
         window.order.settings = settings.read();
+        play.adjust(window.order.scene);
+        if (play.fps > 0) {
+            window.order.play = play;
+            window.order.playing = true;
+        }
         NamedFiles files;
         files.writes("--report", window.report);
         files.reads("--reference", window.reference);
@@ -44,6 +50,8 @@ Action setUpView(CLI::App& app)
     app.add_option("--report", command->window.report,
                    "Keeps writing what the window shows, for scripts: settings, frames, camera, errors, messages.")
         ->option_text("FILE.json");
+    command->play.addTo(app, "Begins by playing the scene's animations (those of --animation), from --time on: each "
+                             "rendered frame shows it 1/FPS seconds later. 0: it is held still.");
     command->window.device.addTo(app);
     command->settings.addTo(app);
     return [command] { return command->run(); };

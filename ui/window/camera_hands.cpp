@@ -15,18 +15,13 @@ namespace
 constexpr double STILL_SECONDS = 0.25;      // after its last move the camera stands
 constexpr double RADIANS_PER_POINT = 0.006; // of dragging
 
-// The pose to change; null before there is a scene.
-Pose* poseIn(Order& order, const SceneFacts* facts)
+// The pose to change, at first that of what is seen; null before there is a picture of the scene.
+Pose* poseIn(WindowState& state)
 {
-    if (!facts || facts->name != order.scene.name) return nullptr;
-    if (!order.pose) {
-        size_t index = 0; // the name was good enough for the render thread
-        for (size_t i = 0; i < facts->cameras.size(); ++i)
-            if (facts->cameras[i].name == order.settings.camera || std::to_string(i) == order.settings.camera)
-                index = i;
-        order.pose = poseOf(facts->cameras[index], facts->origin);
-    }
-    return &*order.pose;
+    const ShotPointer& shot = state.pictures.sides[A];
+    if (!shot || !state.sceneIsThere() || shot->order.scene.name != state.order.scene.name) return nullptr;
+    if (!state.order.pose) state.order.pose = poseOf(shot->camera, state.facts->origin);
+    return &*state.order.pose;
 }
 
 } // namespace
@@ -37,15 +32,16 @@ void CameraHands::reset(Order& order)
     order.moving = false;
 }
 
-void CameraHands::move(Order& order, const SceneFacts* facts, bool mouseTaken)
+void CameraHands::move(WindowState& state, bool mouseTaken)
 {
+    Order& order = state.order;
     const ImGuiIO& io = ImGui::GetIO();
     const std::optional<Pose> before = order.pose;
     const bool dragging = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
     if (!io.WantCaptureMouse && !mouseTaken && (dragging || io.MouseWheel != 0)) {
         const double x = io.MouseDelta.x * RADIANS_PER_POINT, y = io.MouseDelta.y * RADIANS_PER_POINT;
         const bool left = io.MouseDown[0], right = io.MouseDown[1], middle = io.MouseDown[2];
-        Pose* p = left || right || middle || io.MouseWheel != 0 ? poseIn(order, facts) : nullptr;
+        Pose* p = left || right || middle || io.MouseWheel != 0 ? poseIn(state) : nullptr;
         if (p && left) orbit(*p, -x, y);
         if (p && right) look(*p, -x, -y);
         if (p && middle) pan(*p, -io.MouseDelta.x / io.DisplaySize.y, io.MouseDelta.y / io.DisplaySize.y);
@@ -56,7 +52,7 @@ void CameraHands::move(Order& order, const SceneFacts* facts, bool mouseTaken)
             return double(ImGui::IsKeyDown(plus)) - double(ImGui::IsKeyDown(minus));
         };
         const glm::dvec3 way(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_W, GLFW_KEY_S));
-        Pose* p = way != glm::dvec3(0) ? poseIn(order, facts) : nullptr;
+        Pose* p = way != glm::dvec3(0) ? poseIn(state) : nullptr;
         if (p) {
             const double speed = (io.KeyShift ? 4 : 1) * glm::length(p->target - p->position);
             fly(*p, way * speed * std::min(double(io.DeltaTime), 0.1));
@@ -70,7 +66,7 @@ void CameraHands::move(Order& order, const SceneFacts* facts, bool mouseTaken)
     }
 }
 
-bool CameraHands::bookmarks(WindowState& state, const SceneFacts* facts, WindowMemory& memory)
+bool CameraHands::bookmarks(WindowState& state, WindowMemory& memory)
 {
     if (ImGui::GetIO().WantCaptureKeyboard) return false;
     for (const KeyPress& press : state.keys) {
@@ -79,7 +75,7 @@ bool CameraHands::bookmarks(WindowState& state, const SceneFacts* facts, WindowM
         std::optional<Pose>& bookmark = memory.bookmarks[state.order.scene.name][size_t(i)];
         if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
             const bool placed = state.order.pose.has_value();
-            if (const Pose* pose = poseIn(state.order, facts)) bookmark = *pose;
+            if (const Pose* pose = poseIn(state)) bookmark = *pose;
             if (!placed) state.order.pose.reset(); // setting one moves nothing
             state.message = fmt::format("Bookmark {} is here.", i + 1);
             return true;

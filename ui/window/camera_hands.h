@@ -10,11 +10,11 @@ namespace ui
 class CameraHands
 {
   public:
-    // `facts` of the scene on the screen; null: there is none yet. `mouseTaken`: the mouse does something else.
-    void move(Order& order, const SceneFacts* facts, bool mouseTaken);
+    // `mouseTaken`: the mouse does something else.
+    void move(WindowState& state, bool mouseTaken);
     static void reset(Order& order);
     // Keys 1 to 9; true when a bookmark was set.
-    bool bookmarks(WindowState& state, const SceneFacts* facts, WindowMemory& memory);
+    bool bookmarks(WindowState& state, WindowMemory& memory);
 
   private:
     double movedAt_ = -1;

@@ -4,6 +4,7 @@
 #include "passes/camera_path.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace ui
 {
@@ -15,6 +16,17 @@ constexpr uint32_t MOVING_DIVISOR = 2;       // of width and height while the ca
 constexpr double PUBLISH_SECONDS = 1.0 / 60; // no more pictures than a screen shows
 
 } // namespace
+
+std::vector<std::pair<std::string, std::string>> poseText(const Shot& shot)
+{
+    SceneSource scene = shot.order.scene;
+    if (shot.order.playing) scene.time = shot.firstSeconds;
+    std::vector<std::pair<std::string, std::string>> text = scene.toText();
+    Play play = shot.order.play;
+    if (!shot.order.playing) play.speed = 0, play.loop = false;
+    if (shot.sceneSeconds) std::ranges::move(play.toText(), std::back_inserter(text));
+    return text;
+}
 
 passes::Settings settingsOf(const Order& order, Side side)
 {
@@ -31,7 +43,7 @@ passes::Settings settingsOf(const Order& order, Side side)
 passes::StageList stagesFor(const Order& order, Side side, const passes::Renderer& renderer)
 {
     const passes::Settings settings = settingsOf(order, side);
-    passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, order.moving);
+    passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, order.moving, order.playing);
     const passes::Variant variant = stages.front().second;
     const bool resamples = settings.method != passes::Method::Pt;
     if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);
@@ -92,13 +104,21 @@ void Contender::startOver()
 void Contender::place(const Order& order, const scene::Scene& scene)
 {
     const scene::Camera& base = scene.cameras[passes::chooseCamera(scene, order.settings.camera)];
-    renderer_->setCamera(order.pose ? cameraOf(*order.pose, base, scene.origin) : base);
+    camera_ = order.pose ? cameraOf(*order.pose, base, scene.origin) : base;
+    renderer_->setCamera(camera_);
+}
+
+void Contender::show(const scene::Scene& posed, double seconds)
+{
+    renderer_->setScene(posed, seconds);
+    place(followed_, posed);
 }
 
 void Contender::render(bool once)
 {
     const auto start = Clock::now();
     const uint64_t before = frames();
+    if (before == 0) firstSeconds_ = renderer_->sceneSeconds();
     do renderer_->renderFrame(), renderer_->wait();
     while (!once && secondsSince(start) < PUBLISH_SECONDS);
     const double seconds = secondsSince(start);
@@ -112,10 +132,13 @@ void Contender::render(bool once)
 ShotPointer Contender::shot(const Order& order)
 {
     auto shot = std::make_shared<Shot>();
-    shot->single = order.moving || !renderer_->settings().average;
+    shot->single = order.moving || order.playing || !renderer_->settings().average;
     shot->picture = renderer_->read(shot->single ? passes::LAST_FRAME : passes::MEAN);
     shot->order = order;
     shot->order.settings = renderer_->settings();
+    shot->camera = camera_;
+    shot->sceneSeconds = renderer_->sceneSeconds();
+    shot->firstSeconds = firstSeconds_;
     shot->run = run_;
     shot->frames = frames();
     shot->seconds = seconds_;

@@ -15,6 +15,7 @@ passes::StageList stagesFor(const Order& order, Side side, const passes::Rendere
 class Contender
 {
   public:
+    // `scene` is in the pose of the renderer.
     Contender(std::unique_ptr<passes::Renderer> renderer, const scene::Scene& scene, const Order& order, Side side);
 
     // Follows the order from the next frame on. Anything that changes the estimate starts over: a mean over two
@@ -23,6 +24,9 @@ class Contender
     void follow(const Order& order, const scene::Scene& scene);
     bool runs(const Order& order) const; // what the order wants of this side
     void recompile();                    // throws Error: a shader that does not compile
+    // From the next frame on: the scene in another pose, and the camera where that has it. Reuse goes on.
+    void show(const scene::Scene& posed, double seconds);
+    void startOver(); // from the first frame again
 
     // Renders for a sixtieth of a second; `once`: one frame. Throws Error: the device is lost.
     void render(bool once);
@@ -34,13 +38,14 @@ class Contender
 
   private:
     void place(const Order& order, const scene::Scene& scene);
-    void startOver();
     void inspect(Shot& shot);
 
     std::unique_ptr<passes::Renderer> renderer_;
     std::unique_ptr<passes::Inspector> inspector_;
     Side side_;
     Order followed_;
+    std::optional<double> firstSeconds_; // of the scene, in the first frame
+    scene::Camera camera_;
     uint64_t run_ = 0, raysBefore_ = 0;
     double seconds_ = 0, frameMilliseconds_ = 0, raysPerSecond_ = 0;
 };

@@ -47,7 +47,7 @@ bool ErrorMeter::due(Side side) const
 {
     const ShotPointer& shot = offered_.sides[side];
     const Track& track = tracks_[side];
-    if (!shot || !offered_.reference || shot->order.moving) return false;
+    if (!shot || !offered_.reference || shot->order.moving || shot->order.playing) return false;
     if (offered_.reference != track.judge) return true; // one that converges has got better
     return shot != track.tried && (track.curve.empty() || shot->seconds >= APART * track.curve.back().seconds);
 }

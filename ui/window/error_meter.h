@@ -29,7 +29,7 @@ class ErrorMeter
 
     // Every new reference and every new film starts a new curve; a reference that converges goes on being the same.
     // Points are a few percent of their time apart, and the last is measured again whenever the reference has got
-    // better; pictures of a moving camera are not measured.
+    // better; pictures of a moving camera or scene are not measured.
     void offer(const Pictures& pictures);
     ErrorCurve curve(Side side) const { return copyOf(tracks_[side].curve, mutex_); }
     // Why nothing can be measured; empty: nothing is wrong.

@@ -10,6 +10,7 @@
 #include "engine/gpu/gpu.h"
 #include "engine/image/image.h"
 #include "passes/inspector.h"
+#include "ui/cli/motion_options.h"
 #include "ui/cli/scene_source.h"
 #include "ui/window/pose.h"
 
@@ -38,12 +39,14 @@ struct StudyOrder {
 
 // What the window wants to see.
 struct Order {
-    SceneSource scene;                     // its name is empty: nothing yet
-    passes::Settings settings;             // of A
+    SceneSource scene;         // its name is empty: nothing yet. At its time the scene rests or begins to play
+    passes::Settings settings; // of A
     std::optional<passes::Settings> rival; // of B; what says which picture (size, camera, environment) is A's
     std::optional<Pose> pose;              // empty: the camera that the settings name
     bool moving = false;                   // the camera: single frames at a part of the resolution, no film
-    bool paused = false;
+    bool playing = false;                  // the scene: single frames, each of its own time, no film
+    Play play = {.fps = 30};
+    bool paused = false; // no frames at all
     Inspect inspect;
     StudyOrder studies;
     uint64_t restarts = 0; // how often "from the first frame again" was asked for
@@ -54,10 +57,15 @@ struct Order {
 // As they are to run: with A's world, and with a part of the resolution while the camera moves.
 passes::Settings settingsOf(const Order& order, Side side);
 
+struct AnimationFacts {
+    std::string name, fault; // why it cannot be played; empty: it can
+    double seconds = 0;      // how long it is
+};
+
 // What a scene offers to the window.
 struct SceneFacts {
     std::string name; // as ordered
-    std::vector<scene::Camera> cameras;
+    std::vector<AnimationFacts> animations;
     glm::dvec3 origin = {0, 0, 0};
     std::vector<std::string> warnings;
 };
@@ -65,8 +73,11 @@ struct SceneFacts {
 // One finished picture and how it came about.
 struct Shot {
     image::Image picture;
-    Order order;      // its `settings` are those of this picture, whichever side; the size is that of the picture
-    uint64_t run = 0; // grows whenever a film starts
+    Order order;          // its `settings` are those of this picture, whichever side; the size is that of the picture
+    scene::Camera camera; // that sees it, in the scene's coordinates
+    std::optional<double> sceneSeconds; // that it shows; none: the scene at rest
+    std::optional<double> firstSeconds; // that the first frame of its film has shown
+    uint64_t run = 0;                   // grows whenever a film starts
     uint64_t frames = 0;
     double seconds = 0;  // of rendering, since the film started
     bool single = false; // the last frame alone, not the mean
@@ -80,5 +91,8 @@ struct Shot {
     std::vector<std::vector<shared::PathPoint>> paths;
 };
 using ShotPointer = std::shared_ptr<const Shot>;
+
+// What decides the pixels of a shot besides settings and camera, as metadata and as options of `render`: the pose.
+std::vector<std::pair<std::string, std::string>> poseText(const Shot& shot);
 
 } // namespace ui

@@ -1,6 +1,7 @@
 #include "ui/window/render_thread.h"
 
 #include "engine/base/error.h"
+#include "engine/scene/motion.h"
 #include "passes/camera_path.h"
 #include "ui/cli/scene_source.h"
 
@@ -20,6 +21,19 @@ using namespace std::chrono_literals;
 
 constexpr int BACKGROUND = 5;          // nice: the window's thread comes first where the device is the CPU
 constexpr auto WATCH_INTERVAL = 300ms; // between looks at the shaders
+
+// At rest it costs what a scene without animations does; else the renderers are made for all its times.
+std::vector<uint32_t> animationsOf(const scene::Scene& scene, const Order& order)
+{
+    return order.scene.atRest() ? std::vector<uint32_t>() : chosenAnimations(scene, order.scene);
+}
+
+passes::Playback playbackOf(const Order& order, std::vector<uint32_t> animations)
+{
+    const double start = order.scene.time.value_or(0);
+    if (order.playing) return order.play.playback(std::move(animations), start);
+    return {.animations = std::move(animations), .start = start, .step = 0, .loop = false};
+}
 
 } // namespace
 
@@ -90,8 +104,8 @@ void RenderThread::run(const std::stop_token& stop)
         {
             std::unique_lock lock(mutex_);
             const auto due = [&] {
-                const bool idle =
-                    !sides_[A] || (running_.paused && running_.steps >= wanted_.steps && !studies_.busy());
+                const bool idle = !sides_[A] || (running_.paused && running_.steps >= wanted_.steps &&
+                                                 (!studies_.busy() || running_.playing));
                 return news_ || !idle;
             };
             if (watcher_)
@@ -125,7 +139,9 @@ void RenderThread::closeDevice()
 bool RenderThread::sameWorld(const Order& order) const
 {
     const passes::Settings &next = order.settings, &now = running_.settings;
-    if (order.scene != running_.scene || passes::changeBetween(now, next) == passes::Change::Reload) return false;
+    SceneSource atThatTime = running_.scene;
+    if (atThatTime.time && order.scene.time) atThatTime.time = order.scene.time;
+    if (order.scene != atThatTime || passes::changeBetween(now, next) == passes::Change::Reload) return false;
     const auto parallel = [&](const std::string& name) { // what is compiled depends on it
         return scene_->cameras[passes::chooseCamera(*scene_, name)].orthographic;
     };
@@ -147,7 +163,7 @@ void RenderThread::follow(const Order& order)
     if (!sides_[A] || !sameWorld(order))
         load(order);
     else
-        tune(order, A);
+        pose(order), tune(order, A);
     tune(order, B);
     {
         const std::lock_guard lock(mutex_);
@@ -156,6 +172,7 @@ void RenderThread::follow(const Order& order)
     const bool changed = order != running_;
     if (changed) compileAhead(order);
     say("");
+    advance(order);
     renderAndPublish(order, changed);
     study(order);
 }
@@ -176,16 +193,81 @@ void RenderThread::load(const Order& order)
         if (percent >= 100) say("Compiling");
     };
     const passes::Settings settings = settingsOf(order, A);
-    auto renderer = std::make_unique<passes::Renderer>(*device_, *world, settings, progress, scene::FeatureSet::Needed,
-                                                       1, sides_[A] ? sides_[A]->renderer().pipelines() : nullptr);
+    const passes::Playback playback = playbackOf(order, animationsOf(*world, order));
+    const bool moves = !playback.animations.empty();
+    if (moves) scene::pose(*world, {}, 0); // what renderers are made of
+    auto renderer =
+        std::make_unique<passes::Renderer>(*device_, *world, settings, progress, scene::FeatureSet::Needed, 1,
+                                           sides_[A] ? sides_[A]->renderer().pipelines() : nullptr, moves);
+    if (moves) {
+        const double seconds = playback.secondsAt(0, *world->motion);
+        scene::pose(*world, playback.animations, seconds);
+        renderer->setScene(*world, seconds);
+    }
     studies_.clear();
     sides_[B].reset(); // of the old scene
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
+    playback_ = playback;
     compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), {&settings, 1}));
-    const SceneFacts facts{order.scene.name, scene_->cameras, scene_->origin, scene_->warnings};
+    SceneFacts facts{.name = order.scene.name, .origin = scene_->origin, .warnings = scene_->warnings};
+    if (scene_->motion)
+        for (const scene::Animation& animation : scene_->motion->animations)
+            facts.animations.push_back({animation.name, animation.fault, animation.seconds});
     const std::lock_guard lock(mutex_);
     sceneFacts_ = std::make_shared<const SceneFacts>(facts);
+}
+
+// Where the order says another time, or another way to play, that is shown from the first frame on.
+void RenderThread::pose(const Order& order)
+{
+    const bool same = order.scene.time == running_.scene.time && order.playing == running_.playing &&
+                      (!order.playing || order.play == running_.play);
+    if (!moves() || same) return;
+    const passes::Playback playback = playbackOf(order, playback_.animations);
+    bring(playback, 0);
+    playback_ = playback;
+    for (const std::unique_ptr<Contender>& side : sides_)
+        if (side) side->startOver();
+}
+
+// Throws Error, and leaves the scene as it was: it has no pose at that time.
+void RenderThread::bring(const passes::Playback& playback, uint64_t frame)
+{
+    const double before = sides_[A]->renderer().sceneSeconds().value();
+    const double seconds = playback.secondsAt(int64_t(frame), *scene_->motion);
+    if (seconds == before) return;
+    try {
+        scene::pose(*scene_, playback.animations, seconds);
+    } catch (const Error&) {
+        scene::pose(*scene_, playback.animations, before);
+        throw;
+    }
+    for (const std::unique_ptr<Contender>& side : sides_)
+        if (side) side->show(*scene_, seconds);
+}
+
+// While it plays the next frame is of the next time, and both sides show it. When one of them starts over so does the
+// other, there: frame f of both shows playback_.secondsAt(f), which `render` repeats.
+void RenderThread::advance(const Order& order)
+{
+    if (!order.playing || !moves()) return;
+    const double shown = sides_[A]->renderer().sceneSeconds().value();
+    if (sides_[A]->frames() == 0 || (sides_[B] && sides_[B]->frames() == 0)) {
+        playback_.start = shown;
+        for (const std::unique_ptr<Contender>& side : sides_)
+            if (side) side->startOver();
+        return;
+    }
+    if (order.paused && order.steps <= running_.steps) return;
+    try {
+        bring(playback_, sides_[A]->frames());
+    } catch (const Error&) {
+        const std::lock_guard lock(mutex_);
+        good_.playing = false;
+        good_.scene.time = shown;
+        throw;
+    }
 }
 
 // A side whose new settings are not compiled yet goes on with the old ones.
@@ -213,14 +295,14 @@ void RenderThread::tune(const Order& order, Side side)
             std::make_unique<Contender>(std::make_unique<passes::Renderer>(renderer, next), *scene_, order, side);
 }
 
-// Only while the camera rests, and when all that the sides need is compiled.
+// Only while camera and scene rest, and when all that the sides need is compiled.
 void RenderThread::study(const Order& order)
 {
     {
         const std::lock_guard lock(mutex_);
         if (pending_) return;
     }
-    if (order.moving) return;
+    if (order.moving || order.playing) return;
     passes::Renderer& like = sides_[A]->renderer();
     const CompileAhead::Stages stages = Studies::stagesFor(order, like);
     if (!stages.empty() && !compiler_.ready(stages)) return;
@@ -265,7 +347,9 @@ void RenderThread::compileAhead(const Order& order)
         other.shift = shift;
     }
     const passes::SceneOnDevice& scene = sides_[A]->renderer().scene();
-    passes::StageList stages = passes::stagesOf(scene, {&settings, 1}, true); // a moved camera
+    passes::StageList stages;
+    if (scene.moves()) stages = passes::stagesOf(scene, {&settings, 1}, false, true);
+    std::ranges::move(passes::stagesOf(scene, {&settings, 1}, true), std::back_inserter(stages)); // a moved camera
     std::ranges::move(passes::stagesOf(scene, others), std::back_inserter(stages));
     compiler_.later(stages);
 }
@@ -299,7 +383,7 @@ void RenderThread::reloadShaders()
 
 void RenderThread::renderAndPublish(const Order& order, bool changed)
 {
-    const bool step = order.steps > running_.steps, once = order.paused || order.moving;
+    const bool step = order.steps > running_.steps, once = order.paused || order.moving || order.playing;
     running_ = order;
     try {
         for (const Side side : {A, B}) {

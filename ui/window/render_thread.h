@@ -44,6 +44,10 @@ class RenderThread
     void follow(const Order& order);
     void load(const Order& order);
     bool sameWorld(const Order& order) const;
+    void pose(const Order& order);
+    void bring(const passes::Playback& playback, uint64_t frame);
+    void advance(const Order& order);
+    bool moves() const { return sides_[A]->renderer().scene().moves(); }
     void tune(const Order& order, Side side);
     void study(const Order& order);
     void compileAhead(const Order& order);
@@ -76,6 +80,7 @@ class RenderThread
     bool reload_ = false;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<scene::Scene> scene_;
+    passes::Playback playback_; // of a scene that moves, since the sides have last started over
     std::unique_ptr<Contender> sides_[SIDES];
     Studies studies_; // of the sides' scene and device
     Order running_;

@@ -37,7 +37,7 @@ std::string takeScreenshot(const Shot& shot)
     report.settings.frames = uint32_t(shot.frames);
     report.settings.seconds = 0;
     report.settings.average = !shot.single;
-    report.extra = scene.toText();
+    report.extra = poseText(shot);
     std::string camera;
     if (shot.order.pose) {
         camera = name + ".camera.json";
@@ -51,7 +51,7 @@ std::string takeScreenshot(const Shot& shot)
     std::string line = fmt::format("trichrome render {} -o {}-again.exr --preset {}.json --device {}",
                                    shellQuoted(scene.name), name, name, shellQuoted(shot.adapter.name));
     if (!scene.assetRoot.empty()) line += " --asset-root " + shellQuoted(scene.assetRoot);
-    for (const auto& [option, value] : scene.toText()) line += " --" + option + " " + shellQuoted(value);
+    for (const auto& [option, value] : poseText(shot)) line += " --" + option + " " + shellQuoted(value);
     if (!camera.empty())
         line += fmt::format(" --camera-path {} --average {}", camera, report.settings.average ? "on" : "off");
     return line;

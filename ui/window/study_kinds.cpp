@@ -193,8 +193,11 @@ class SavingsStudy : public Study
     explicit SavingsStudy(const Subject& subject)
         : needed_(siblingOf(subject, subject.settings)),
           everything_(std::make_unique<passes::Renderer>(subject.like.device(), subject.scene, subject.settings,
-                                                         std::function<void(double)>(), scene::FeatureSet::Everything))
+                                                         std::function<void(double)>(), scene::FeatureSet::Everything,
+                                                         1, nullptr, subject.like.scene().moves()))
     {
+        if (const std::optional<double> seconds = subject.like.sceneSeconds())
+            everything_->setScene(subject.scene, *seconds);
         everything_->setCamera(subject.camera);
         everything_->reset();
         savings_.neededBytes = needed_->stats().sceneBytes;

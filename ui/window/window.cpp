@@ -16,6 +16,7 @@
 #include "ui/window/presenter.h"
 #include "ui/window/render_thread.h"
 #include "ui/window/screenshot.h"
+#include "ui/window/timeline_room.h"
 #include "ui/window/undo_list.h"
 #include "ui/window/window_report.h"
 
@@ -107,6 +108,7 @@ class Window
             loadReference(file);
         } else {
             state_.order.scene = {.name = file, .assetRoot = state_.order.scene.assetRoot}; // at rest
+            state_.order.playing = false;
             state_.order.pose.reset();
             state_.order.settings.camera.clear();
         }
@@ -175,6 +177,10 @@ class Window
     {
         const ShotPointer shot = state_.pictures.shotOf(state_.view.left());
         if (!shot || shot->order.moving) return;
+        if (shot->order.playing) {
+            state_.message = "A reference is of a scene that rests: stop it first (T).";
+            return;
+        }
         const std::string name =
             fmt::format("{}, {} frames", passes::toText(shot->order.settings).front().second, shot->frames);
         setReference(std::make_shared<const Reference>(Reference{shot->picture, name}));
@@ -202,6 +208,9 @@ class Window
         if (pressed(GLFW_KEY_SPACE)) state_.order.paused = !state_.order.paused;
         if (pressed(GLFW_KEY_N)) state_.order.paused = true, ++state_.order.steps;
         if (pressed(GLFW_KEY_R)) ++state_.order.restarts;
+        if (pressed(GLFW_KEY_T)) play(state_, !state_.order.playing);
+        if (pressed(GLFW_KEY_COMMA)) stepScene(state_, -1);
+        if (pressed(GLFW_KEY_PERIOD)) stepScene(state_, 1);
         if (pressed(GLFW_KEY_C)) compare(state_, !state_.order.rival);
         if (pressed(GLFW_KEY_TAB)) state_.view.flipped = !state_.view.flipped;
         if (pressed(GLFW_KEY_F)) requests.freeze = true;
@@ -258,6 +267,7 @@ class Window
         int width = 0, height = 0;
         glfwGetFramebufferSize(frame_.window, &width, &height);
         const int left = std::min(int(state_.panelWidth()), width);
+        height = std::max(height - int(timelineHeight(state_)), 0);
         const passes::Settings& full = state_.order.settings;
         const double scale = std::min(double(width - left) / full.width, double(height) / full.height);
         const int w = int(full.width * scale), h = int(full.height * scale);
@@ -300,15 +310,16 @@ class Window
         }
         state_.activity = thread_.activity();
         state_.ahead = thread_.ahead();
-        if (const std::shared_ptr<const SceneFacts> facts = thread_.scene(); facts != facts_) takeScene(facts);
+        if (const std::shared_ptr<const SceneFacts> facts = thread_.scene(); facts != state_.facts) takeScene(facts);
     }
 
     // What was said of the scene before goes with it.
     void takeScene(const std::shared_ptr<const SceneFacts>& facts)
     {
-        const std::string before = facts_ ? linesOf(facts_->warnings) : "", now = linesOf(facts->warnings);
+        const std::string before = state_.facts ? linesOf(state_.facts->warnings) : "", now = linesOf(facts->warnings);
         if (!now.empty() || state_.message == before) state_.message = now;
-        facts_ = facts;
+        state_.facts = facts;
+        if (facts->animations.empty()) state_.order.playing = false;
         memory_.opened(std::filesystem::exists(facts->name) ? std::filesystem::absolute(facts->name).string()
                                                             : facts->name);
         state_.recent = memory_.recent;
@@ -340,14 +351,16 @@ class Window
         hover(area);
         drawPanel(state_);
         drawHelp(state_);
+        drawTimeline(state_);
+        stopAtTheEnd(state_);
         drawPixel(state_);
         drawErrorPlot(state_, meter_);
         drawCorrelationPlot(state_);
         const bool mouseTaken = drawOverPicture(state_, {float(area.x), float(area.y)},
                                                 {float(area.x + area.width), float(area.y + area.height)});
         readKeys();
-        hands_.move(state_.order, facts_.get(), mouseTaken);
-        if (hands_.bookmarks(state_, facts_.get(), memory_)) remember();
+        hands_.move(state_, mouseTaken);
+        if (hands_.bookmarks(state_, memory_)) remember();
         state_.keys.clear();
         answerRequests();
         state_.order.inspect = inspectionFor(state_);
@@ -414,7 +427,6 @@ class Window
     std::pair<Pictures, View> legendOf_;
     bool freshPresenter_ = false;
     std::string line_;
-    std::shared_ptr<const SceneFacts> facts_;
     std::future<std::pair<ReferencePointer, std::vector<std::string>>> loading_;
     double reportedAt_ = 0, lostAt_ = -LOSS_SECONDS;
     std::deque<double> latencies_;

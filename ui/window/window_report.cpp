@@ -19,10 +19,12 @@ using Json = nlohmann::ordered_json;
 Json reportOf(const Shot& shot)
 {
     return {{"scene", shot.order.scene.name},
-            {"settings", toJson(shot.order.settings, shot.order.scene.toText())},
+            {"settings", toJson(shot.order.settings, poseText(shot))},
             {"frames", shot.frames},
             {"seconds", shot.seconds},
             {"moving", shot.order.moving},
+            {"playing", shot.order.playing},
+            {"scene_seconds", shot.sceneSeconds ? Json(*shot.sceneSeconds) : Json(nullptr)},
             {"camera_moved", shot.order.pose.has_value()},
             {"paused", shot.order.paused},
             {"reservoirs", reservoirCount(shot)},
@@ -75,6 +77,8 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
         {"settings", passes::toJson(state.order.settings)}, // what hands have set, whether it runs yet or not
         {"comparing", state.order.rival.has_value()},
         {"paused", state.order.paused},
+        {"playing", state.order.playing},
+        {"time", state.order.scene.time ? Json(*state.order.scene.time) : Json(nullptr)},
         {"moved", state.order.pose.has_value()},
         {"pixel", state.pixel},
         {"converging", state.order.studies.reference},

@@ -42,6 +42,8 @@ struct WindowState {
     Places places;
 
     // What there is to show this time.
+    std::shared_ptr<const SceneFacts> facts; // of the last scene that was loaded; null: none yet
+    bool sceneIsThere() const { return facts && facts->name == order.scene.name; }
     Pictures pictures;
     std::shared_ptr<const Findings> findings = std::make_shared<const Findings>(); // never null
     std::vector<LegendWord> legend;         // of the false colors of the picture on the left

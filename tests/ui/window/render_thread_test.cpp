@@ -4,6 +4,7 @@
 #include "ui/window/render_thread.h"
 
 #include "engine/gpu/vulkan.h"
+#include "passes/sequence.h"
 #include "tests/support/tiny_gltf.h"
 
 #include <atomic>
@@ -37,6 +38,17 @@ ui::Order small()
     order.settings.height = 18;
     order.settings.maxBounces = 1;
     return order;
+}
+
+// A glowing triangle before the camera, which is 9 m to the right after 2 s, in steps of its own: at 1 s, 2 m.
+void fillMoving(TinyGltf& file)
+{
+    file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.json["nodes"].push_back({{"camera", 0}, {"translation", {0.4, 0.4, 2}}});
+    file.json["scenes"][0]["nodes"].push_back(1);
+    file.material()["emissiveFactor"] = {1, 1, 1};
+    file.animate({{"node", 0}, {"path", "translation"}}, {0, 1, 2}, {0, 0, 0, 2, 0, 0, 9, 0, 0}, "VEC3");
+    file.load(); // writes it
 }
 
 bool comes(const std::function<bool()>& condition) // within minutes, for busy machines
@@ -109,17 +121,12 @@ TEST(RenderThread, APictureThatIsTooLargeChangesNothing)
     EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->frames > frames; }));
 }
 
-// The pose is a part of the scene: another time is loaded, and a film of the other pose begins.
+// The pose is a part of the scene: a film of the other pose begins.
 TEST(RenderThread, AnotherTimeShowsAnotherPose)
 {
     lost = false;
     TinyGltf file;
-    file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
-    file.json["nodes"].push_back({{"camera", 0}, {"translation", {0.4, 0.4, 2}}});
-    file.json["scenes"][0]["nodes"].push_back(1);
-    file.material()["emissiveFactor"] = {1, 1, 1};
-    file.animate({{"node", 0}, {"path", "translation"}}, {0, 2}, {0, 0, 0, 9, 0, 0}, "VEC3");
-    file.load(); // writes it
+    fillMoving(file);
     ui::RenderThread thread(open, "", [] {});
     ui::Order order = small();
     order.scene.name = (file.folder / "tiny.gltf").string();
@@ -132,6 +139,133 @@ TEST(RenderThread, AnotherTimeShowsAnotherPose)
     EXPECT_EQ(middle(std::nullopt), glm::vec3(1));
     EXPECT_EQ(middle(2), glm::vec3(0));
     EXPECT_EQ(middle(0), glm::vec3(1));
+}
+
+// Both sides show the same time, a frame's step after the frame before, and `render` repeats it: frame f of a sequence.
+TEST(RenderThread, PlayingStepsBothSidesThroughWhatASequenceShows)
+{
+    lost = false;
+    TinyGltf file;
+    fillMoving(file);
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.scene = {.name = (file.folder / "tiny.gltf").string(), .time = 0.5};
+    order.settings.shift = passes::Shift::Replay; // less to compile
+    order.settings.spatial = 0;
+    order.rival = order.settings;
+    order.rival->method = passes::Method::RgbRestir;
+    order.playing = order.paused = true; // a frame when it is asked for
+    order.play = {.fps = 4, .speed = 2};
+    constexpr uint64_t FRAMES = 6; // to 0.5, 1, 1.5, 0, 0.5 and 1 s
+    for (uint64_t frame = 1; frame <= FRAMES; ++frame) {
+        order.steps = frame - 1;
+        thread.order(order);
+        ASSERT_TRUE(comes([&] {
+            return thread.shot(ui::A) && thread.shot(ui::B) && thread.shot(ui::A)->frames == frame &&
+                   thread.shot(ui::B)->frames == frame;
+        })) << frame
+            << thread.activity();
+        for (const ui::Side side : {ui::A, ui::B}) {
+            EXPECT_EQ(thread.shot(side)->sceneSeconds, std::fmod(0.5 * double(frame), 2.0));
+            EXPECT_TRUE(thread.shot(side)->single);
+        }
+    }
+
+    gpu::Device device = open();
+    for (const ui::Side side : {ui::A, ui::B}) {
+        const passes::Settings settings = ui::settingsOf(order, side);
+        scene::Scene scene = ui::openScene({.name = order.scene.name}, settings, [](const std::string&, double) {});
+        passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, 1, nullptr, true);
+        const passes::Sequence sequence(scene, order.play.playback({0}, 0.5), 0);
+        for (uint64_t frame = 0; frame < FRAMES; ++frame) {
+            sequence.bring(renderer, int64_t(frame));
+            renderer.renderFrame();
+        }
+        EXPECT_TRUE(renderer.read(passes::LAST_FRAME).pixels == thread.shot(side)->picture.pixels) << side;
+    }
+
+    // What starts over on one side does on both, there.
+    order.rival->maxConfidence = 3;
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A)->frames == 1 && thread.shot(ui::B)->frames == 1; }));
+    order.steps += 1;
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A)->frames == 2 && thread.shot(ui::B)->frames == 2; }));
+    for (const ui::Side side : {ui::A, ui::B}) {
+        EXPECT_EQ(thread.shot(side)->firstSeconds, 1.0);
+        EXPECT_EQ(thread.shot(side)->sceneSeconds, 1.5);
+    }
+
+    order.playing = order.paused = false;
+    order.scene.time = 1.5;
+    thread.order(order);
+    EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->order == order && thread.shot(ui::A)->frames > 3; }));
+    EXPECT_EQ(thread.shot(ui::A)->sceneSeconds, 1.5);
+    EXPECT_FALSE(thread.shot(ui::A)->single);
+}
+
+// What is measured is of one time: at 1 s the triangle is out of the picture.
+TEST(RenderThread, StudiesWaitUntilTheSceneRestsAndAreOfThatTime)
+{
+    lost = false;
+    TinyGltf file;
+    fillMoving(file);
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.scene = {.name = (file.folder / "tiny.gltf").string(), .time = 0};
+    order.settings.method = passes::Method::RestirPt;
+    order.settings.shift = passes::Shift::Replay;
+    order.settings.spatial = 0;
+    order.settings.maxConfidence = 4;
+    order.studies = {.reference = true, .correlation = true, .floor = true};
+    order.playing = true;
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A) && thread.shot(ui::A)->frames > 20; }));
+    EXPECT_FALSE(thread.findings()->reference);
+    EXPECT_FALSE(thread.findings()->curves[ui::A]);
+    order.playing = false;
+    uint64_t before = 0; // the reference
+    const auto reference = [&](double time) {
+        order.scene.time = time;
+        thread.order(order);
+        EXPECT_TRUE(comes([&] { return thread.shot(ui::A)->order == order; }));
+        EXPECT_TRUE(comes([&] {
+            const auto findings = thread.findings();
+            return findings->reference && findings->reference->converging != before && findings->curves[ui::A] &&
+                   findings->floors[ui::A];
+        }));
+        before = thread.findings()->reference->converging;
+        return thread.findings()->reference->picture.pixels.at(9 * 32 + 15);
+    };
+    EXPECT_EQ(reference(1), glm::vec3(0));
+    EXPECT_EQ(reference(0), glm::vec3(1));
+    order.studies = {.savings = 1};
+    thread.order(order);
+    EXPECT_TRUE(comes([&] { return thread.findings()->savings.has_value(); }));
+}
+
+TEST(RenderThread, AnAnimatedCameraIsFollowedUntilItIsTaken)
+{
+    lost = false;
+    TinyGltf file;
+    fillMoving(file);
+    file.animate({{"node", 1}, {"path", "translation"}}, {0, 2}, {0.4f, 0.4f, 2, 0.4f, 0.4f, 4}, "VEC3");
+    file.load();
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.scene = {.name = (file.folder / "tiny.gltf").string(), .time = 0};
+    const auto away = [&](double time) {
+        order.scene.time = time;
+        thread.order(order);
+        EXPECT_TRUE(comes([&] { return thread.shot(ui::A) && thread.shot(ui::A)->order == order; }));
+        return thread.shot(ui::A)->camera.position.z + thread.scene()->origin.z;
+    };
+    EXPECT_NEAR(away(0), 2, 1e-6);
+    EXPECT_NEAR(away(1), 3, 1e-6);
+    order.pose = ui::poseOf(thread.shot(ui::A)->camera, thread.scene()->origin);
+    EXPECT_NEAR(away(2), 3, 1e-6);
+    order.pose.reset();
+    EXPECT_NEAR(away(2), 4, 1e-6);
 }
 
 // Each study says what is known otherwise: chains follow their law, RGB has no floor, the reference is the picture.
