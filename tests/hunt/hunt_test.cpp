@@ -196,7 +196,7 @@ TEST(Cases, OfASessionCompileOnce)
             const Case c = session.draw(place);
             const bool moves = !c.moves.empty();
             const scene::SceneFeatures f =
-                moves ? scene::MovingTables(withMotion(c.scene, c.moves), UINT64_MAX).rest().features
+                moves ? scene::MovingTables(withMotion(c.scene, c.moves), UINT64_MAX).last().features
                       : scene::makeSceneTables(c.scene, UINT64_MAX).features;
             return passes::makeVariant(f, passes::Settings{}, false, {}, moves);
         };
