@@ -88,7 +88,9 @@ const ShiftError ERRORS[] = {
     {"MissingDensity",
      {{"path/reconnection.glsl", "x.arrival * x.departure;", "x.arrival;"}},
      &ShiftFindings::jacobian},
-    {"JacobianTimes1_02", {{"path/shift.glsl", "f * geometry;", "1.02 * f * geometry;"}}, &ShiftFindings::home},
+    {"JacobianTimes1_02",
+     {{"path/shift.glsl", "x.throughput * f * (infinite", "1.02 * x.throughput * f * (infinite"}},
+     &ShiftFindings::home},
 };
 
 class ShiftErrors : public GpuTest, public testing::WithParamInterface<ShiftError>
