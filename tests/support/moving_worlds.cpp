@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -145,15 +144,19 @@ Scene lampChanges(uint32_t frame) // color and power, by a factor of 10 and to n
     scene::addQuad(scene, wall, {-1.5f, 0.1f, -1}, {0.5f, 0, 0.2f}, {0, 1.5f, 0});
     return scene;
 }
-Scene ceilingLit(uint32_t frame) // all light has come by way of a ceiling, from a lamp that turns up and down
+Scene ceilingLit(uint32_t frame) // all light has come by way of a ceiling, from a spot that turns up and down
 {
     Scene scene = testScene("Lambert");
     scene.environment = {};
-    moveMaterial(scene, LAMP, glm::rotate(glm::translate(I, {0, 4.6f, 0}), glm::pi<float>(), {1, 0, 0}));
-    scene.materials[LAMP].emission = glm::vec3(30, 20, 25) * (frame % 2 ? 1.0f : 4.0f);
-    const uint32_t ceiling = scene::addMaterial(scene, scene::diffuse("ceiling", {0.8f, 0.9f, 0.7f}));
-    scene::addQuad(scene, ceiling, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4});
-    return moving(std::move(scene), {LAMP});
+    scene.materials[LAMP].emission = vec3(0);
+    scene::addQuad(scene, scene::addMaterial(scene, scene::diffuse("ceiling", {0.8f, 0.9f, 0.7f})), {-2, 2.6f, -2},
+                   {4, 0, 0}, {0, 0, 4});
+    scene.lights.push_back({.kind = scene::LightKind::Spot,
+                            .intensity = vec3(6, 4, 5) * (frame % 2 ? 1.0f : 4.0f),
+                            .position = {0, 1.9f, 0},
+                            .direction = {0, 1, 0},
+                            .outerConeAngle = 1.2f});
+    return moving(std::move(scene));
 }
 Scene lightsWander(uint32_t frame) // point, spot and directional
 {

@@ -6,6 +6,7 @@
 #include "tests/support/moving_worlds.h"
 #include "tests/support/test_scenes.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <tuple>
@@ -77,13 +78,14 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
 
     const uint32_t lastFrame = frames - 1;
-    using View = std::tuple<std::string, bool, uint32_t>; // scene, moves, frame
-    static std::map<View, PictureEstimates> traced;       // the matrix asks again and again
-    PictureEstimates& expected = traced[{scene, moves, moves || sceneAt ? lastFrame : 0}];
+    const uint32_t traceFrames = sceneAt ? std::max(PT_FRAMES, 8 * runs) : PT_FRAMES;
+    using View = std::tuple<std::string, bool, uint32_t, uint32_t>; // scene, moves, frame, traced
+    static std::map<View, PictureEstimates> traced;                 // the matrix asks again and again
+    PictureEstimates& expected = traced[{scene, moves, moves || sceneAt ? lastFrame : 0, traceFrames}];
     if (expected.tiles.tiles.empty()) {
         scene::Scene last = sceneAt ? sceneAt(lastFrame) : world; // as the last frame sees it
         last.cameras[0] = cameraAt(lastFrame);
-        expected = renderFrames(device, last, settings, (sceneAt ? 4 : 1) * PT_FRAMES);
+        expected = renderFrames(device, last, settings, traceFrames);
     }
 
     settings.seed = 1000;
