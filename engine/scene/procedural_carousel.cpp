@@ -48,10 +48,12 @@ void addHall(Scene& scene)
     const uint32_t lantern = addMaterial(scene, emitter("lantern", {24, 8, 0.8f}));
 
     const float side = 2 * HALL, tile = side / 12;
-    for (int i = 0; i < 144; ++i)
-        addQuad(scene, tiles[(i / 12 + i) % 2],
-                {-HALL + tile * static_cast<float>(i % 12), 0, -HALL + tile * static_cast<float>(i / 12)}, {0, 0, tile},
-                {tile, 0, 0});
+    for (int column = 0; column < 12; ++column) {
+        for (int row = 0; row < 12; ++row)
+            addQuad(scene, tiles[(row + column) % 2],
+                    {-HALL + tile * static_cast<float>(column), 0, -HALL + tile * static_cast<float>(row)},
+                    {0, 0, tile}, {tile, 0, 0});
+    }
     addQuad(scene, plaster, {-HALL, HEIGHT, -HALL}, {side, 0, 0}, {0, 0, side});
     for (const double quarter : {0.0, 0.25, 0.5, 0.75}) {
         const glm::dmat4 wall = turned(quarter);

@@ -88,7 +88,7 @@ void addFlags(Scene& scene, MotionBuilder& builder, std::span<const uint32_t> cl
         addPole(scene, iron, {x, 0, z}, static_cast<float>(top) + 0.1f);
         const uint32_t node =
             builder.addNode({.translation = {x, top, z}, .rotation = glm::angleAxis(glm::radians(degrees[i]), UP)});
-        builder.addPart(node, flag, cloths[i]);
+        builder.addPart(node, flag, cloths[static_cast<size_t>(i)]);
         const int waves = 2 + i % 2;
         builder.morph(node, static_cast<uint32_t>(8 * waves), [&](double phase) {
             const double angle = 2 * PI * (waves * phase + 0.3 * i);
