@@ -27,7 +27,10 @@ void Play::addTo(CLI::App& app, const std::string& doc)
            "--loop", [this](const std::string& word) { loop = word == "on"; },
            "Whether it begins again after the last key; off: it stays as it is there.")
         ->option_text("on|off (on)")
-        ->check(CLI::IsMember({"on", "off"}))
+        ->check([](const std::string& value) {
+            return value == "on" || value == "off" ? std::string()
+                                                   : fmt::format("\"{}\" is neither on nor off.", value);
+        })
         ->needs(option)
         ->group("Animation");
 }

@@ -25,6 +25,7 @@ std::string complaint(const ui::Command& command, const std::string& option, con
     } catch (const CLI::ConversionError& error) {
         return error.what();
     } catch (const CLI::RequiredError&) {
+    } catch (const CLI::RequiresError&) { // another option, which this one goes with
     }
     return "";
 }
