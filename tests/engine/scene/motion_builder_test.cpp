@@ -37,7 +37,7 @@ class MotionBuilderTest : public testing::Test
             << seconds << " s: " << found.x << ' ' << found.y << ' ' << found.z;
     }
 
-    Scene scene_;
+    Scene scene_{.materials = std::vector<Material>(5)};
 };
 
 } // namespace
