@@ -17,7 +17,7 @@ struct LightTables {
     std::vector<glm::uvec4> environmentAliases; // one row for two texels
     double environmentPower = 0;                // of a scene of radius 1
     float environmentPick = 0;
-    std::vector<uint32_t> emitters;        // triangles that are lights, the first of all
+    std::vector<uint32_t> emitters;        // triangles that are lights in some pose, the first of all lights
     std::vector<uint32_t> lightOfTriangle; // NO_INDEX: not sampled by next-event estimation
     std::vector<double> emissiveMeans;     // by material: of its emissive texture's largest channel; 1: it has none
     bool shine = false;                    // whether any of the lights does

@@ -162,20 +162,13 @@ std::vector<uint8_t> alphaTests(const Scene& scene, const SceneFeatures& feature
     return tests;
 }
 
-SceneFeatures featuresOf(const Scene& scene, SceneFeatures features, const LightCounts& lights, bool moves,
-                         FeatureSet featureSet)
+SceneFeatures featuresOf(SceneFeatures features, const LightTables& lights, FeatureSet featureSet)
 {
     if (featureSet == FeatureSet::Everything) return everything();
-    features.HAS_EMISSIVE = lights.emissiveTriangles > 0;
-    features.HAS_PUNCTUAL = lights.points + lights.spots > 0;
-    features.HAS_DIRECTIONAL = lights.directionals > 0;
-    features.HAS_ENVIRONMENT = lights.environments > 0;
-    if (!moves) return features;
-    // What is hidden or has no area at rest may shine later.
-    for (const Triangle& triangle : scene.triangles)
-        features.HAS_EMISSIVE |= scene.materials[triangle.material].emission != glm::vec3(0);
-    for (const Motion::Paint& paint : scene.motion->paints)
-        features.HAS_EMISSIVE |= !scene.materials[paint.material].unlit;
+    features.HAS_EMISSIVE = !lights.emitters.empty();
+    features.HAS_PUNCTUAL = lights.counts.points + lights.counts.spots > 0;
+    features.HAS_DIRECTIONAL = lights.counts.directionals > 0;
+    features.HAS_ENVIRONMENT = lights.counts.environments > 0;
     return features;
 }
 
@@ -207,7 +200,7 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
     SceneTables tables;
     tables.lengthScale = lengthScale;
     tables.radianceScale = lights.radianceScale;
-    tables.features = featuresOf(scene, materials.features, lights.counts, moves, featureSet);
+    tables.features = featuresOf(materials.features, lights, featureSet);
     tables.texels = std::move(materials.texels);
     const bool black =
         tables.features.HAS_ENVIRONMENT && lights.environment.empty(); // asked for, but the scene has none

@@ -59,7 +59,8 @@ std::vector<RestirCase> movingCases()
         };
         return cases;
     }
-    cases = {{"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 12000, 5}}; // what StaleSuffix, below, is planted in
+    cases = {{"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 12000,
+              5}}; // what StaleSuffix is planted in (restir_planted_test.cpp)
     for (const passes::Method method : {RestirPt, RgbRestir, GroupedRestir})
         for (const passes::Shift shift : {Replay, Reconnection, Hybrid})
             for (const Reuse reuse : {Temporal, Both})
@@ -82,40 +83,6 @@ TEST_P(MovingAgreement, WithThePathTracer)
 
 INSTANTIATE_TEST_SUITE_P(Of, MovingAgreement, testing::ValuesIn(movingCases()),
                          [](const auto& i) { return i.param.name(); });
-
-// Would that notice?
-struct MovingError {
-    const char* name; // of plantedErrors()
-    RestirCase test;
-};
-void PrintTo(const MovingError& error, std::ostream* os)
-{
-    *os << error.name;
-}
-
-const MovingError ERRORS[] = {
-    {"PreviousWorldForgotten", {"LampChanges", RgbRestir, Hybrid, Temporal, false, 64, 200, 5}},
-    {"StaleSuffix", {"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 500, 5}},
-    {"StretchingForgotten", {"WallStretches", RgbRestir, Hybrid, Temporal, false, 64, 300}},
-};
-
-class MovingPlantedErrors : public GpuTest, public testing::WithParamInterface<MovingError>
-{
-};
-
-TEST_P(MovingPlantedErrors, AreFound)
-{
-    const MovingError& error = GetParam();
-    PlantedShaders shaders(error.name);
-    shaders.plant(plantedError(error.name));
-    gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
-    const TileVerdict verdict = error.test.verdict(planted);
-    EXPECT_FALSE(verdict.passes) << verdict.summary;
-    std::printf("%s: %s\n", error.name, verdict.summary.c_str());
-}
-
-INSTANTIATE_TEST_SUITE_P(Of, MovingPlantedErrors, testing::ValuesIn(ERRORS),
-                         [](const auto& i) { return i.param.name; });
 
 class MovingWorlds : public GpuTest
 {

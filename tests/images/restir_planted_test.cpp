@@ -29,6 +29,10 @@ const RestirError ERRORS[] = {
     {"WeightTimes1_02", {"Lambert", RgbRestir, Hybrid, Temporal, true, 8}},
     {"MissingGeometryTerm", {"Room", RgbRestir, Hybrid, Temporal, true, 8}},
     {"MissingDeparture", {"Room", RgbRestir, Hybrid, Temporal, true, 8}},
+    // Where the scene moves.
+    {"PreviousWorldForgotten", {"LampChanges", RgbRestir, Hybrid, Temporal, false, 64, 200, 5}},
+    {"StaleSuffix", {"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 500, 5}},
+    {"StretchingForgotten", {"WallStretches", RgbRestir, Hybrid, Temporal, false, 64, 300}},
 };
 
 class RestirPlantedErrors : public GpuTest, public testing::WithParamInterface<RestirError>

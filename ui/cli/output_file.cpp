@@ -23,6 +23,12 @@ void requireApart(const NamedFile& output, const NamedFile& input)
                          input.file.string(), input.option);
 }
 
+void requireTwo(const NamedFile& output, const std::string& option, const std::filesystem::path& file)
+{
+    if (files::areSame(output.file, file))
+        throw UsageError("{} and {} would both write the file \"{}\": name two.", output.option, option, file.string());
+}
+
 } // namespace
 
 void requireWritable(const std::filesystem::path& file, std::initializer_list<const char*> extensions)
@@ -53,12 +59,16 @@ void NamedFiles::reads(const std::string& option, const std::filesystem::path& f
 void NamedFiles::writes(const std::string& option, const std::filesystem::path& file)
 {
     if (file.empty()) return;
-    for (const NamedFile& output : outputs_)
-        if (files::areSame(output.file, file))
-            throw UsageError("{} and {} would both write the file \"{}\": name two.", output.option, option,
-                             file.string());
+    for (const NamedFile& output : outputs_) requireTwo(output, option, file);
     outputs_.push_back({option, file});
     for (const NamedFile& input : inputs_) requireApart(outputs_.back(), input);
+}
+
+void NamedFiles::writesAlso(const std::string& option, const std::filesystem::path& file) const
+{
+    for (const NamedFile& output : outputs_)
+        if (output.option != option) requireTwo(output, option, file);
+    for (const NamedFile& input : inputs_) requireApart({option, file}, input);
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text)

@@ -26,6 +26,8 @@ class NamedFiles
   public:
     void reads(const std::string& option, const std::filesystem::path& file);
     void writes(const std::string& option, const std::filesystem::path& file);
+    // One of the many files that an option writes; not remembered.
+    void writesAlso(const std::string& option, const std::filesystem::path& file) const;
 
   private:
     std::vector<NamedFile> inputs_, outputs_;

@@ -125,6 +125,8 @@ int RenderCommand::run()
     gpu::Device gpu = device.open(checkpoint.resumes());
     scene::Scene world = openScene(scene, report.settings, progress);
     for (const std::filesystem::path& file : world.files) named.reads("SCENE", file);
+    for (uint64_t frame = 0; frames.given() && frame < report.settings.frames; ++frame)
+        if (const auto file = frames.fileOf(frame); !file.empty()) named.writesAlso("--output", file);
     const passes::Sequence sequence = motion.read(world, report.settings, scene);
     report.adapter = gpu.adapter();
     report.loadSeconds = secondsSince(loadStart);

@@ -110,5 +110,13 @@ TEST_F(Sequences, RefuseWhatMakesNoSense)
     refuses("x.png", {"--fps", "5", "--animation", "off"}, "leave out one of the two");
     refuses("x.png", {"--speed", "2"}, "--fps");
     refuses("x.png", {"--fps", "nan"}, "--fps");
+    runWell(command("1.exr", {"--time", "0"}));
+    const std::vector<glm::vec3> before = pixels("1.exr");
+    refuses("%d.exr", {"--sequence", "0:3", "--time", "0", "--environment", directory / "1.exr"},
+            "--output would write over");
+    refuses("%d.exr", {"--sequence", "0:3", "--time", "0", "--stats", directory / "1.exr"},
+            "would both write the file");
+    EXPECT_EQ(pixels("1.exr"), before);
+    EXPECT_FALSE(std::filesystem::exists(directory / "0.exr"));
     expectRefusal(command("none/%d.png", {"--sequence", "0:2"}), 1, "none");
 }
