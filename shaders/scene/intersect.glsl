@@ -2,7 +2,8 @@
 //
 // The includer declares the tables Nodes and Triangles, the constants bool HAS_ALPHA, uint STACK_SIZE (at least the tree's
 // depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of
-// flagged triangles only; and TREE_ROOT, if the root is not node 0.
+// flagged triangles only; and TREE_ROOT, if the root is not node 0; and TREE_RADIUS where the tree is not a matter of where
+// the triangles are alone: then a sphere about the origin says how large the scene is, or the root does where that is 0.
 //
 // Written for drivers that run 8 lanes under masks (lib/lanes.glsl): hence planes picked by the ray's signs, and a stack in
 // registers. Mesa's CPU driver stores to an indexed array lane by lane, each behind a branch that is mispredicted when
@@ -17,6 +18,9 @@
 
 #ifndef TREE_ROOT
 #define TREE_ROOT 0u
+#endif
+#ifndef TREE_RADIUS
+#define TREE_RADIUS 0.0
 #endif
 
 const uint NO_HIT = 0xffffffffu;
@@ -50,6 +54,7 @@ struct TraversalRay {
 // and their rounding, of the scene's size however far the origin is.
 float distanceToScene(vec3 origin, vec3 direction)
 {
+    if (TREE_RADIUS > 0.0) return max(-dot(origin, direction) - 2.0 * TREE_RADIUS, 0.0);
     uvec4 frame = FETCH(Nodes, BVH_NODE_STRIDE * TREE_ROOT);
     uvec3 exponents = (uvec3(frame.w) >> uvec3(0u, 8u, 16u)) & 255u;
     vec3 halfExtent = 127.5 * uintBitsToFloat(exponents << 23);

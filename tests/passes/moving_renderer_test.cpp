@@ -126,6 +126,32 @@ TEST_F(MovingRenderer, ShowsTheLastPoseThatItWasGiven)
     expectFinite(direct);
 }
 
+// Boxes of the tree have grown on the way. From afar rays begin where the scene does, and that must not depend on them.
+TEST_F(MovingRenderer, ShowsWhatItHasBeenThroughInNoPicture)
+{
+    const auto wallAt = [](double x) {
+        scene::Scene scene;
+        scene::addQuad(scene, scene::addMaterial(scene, scene::diffuse("wall", {0.5f, 0.5f, 0.5f})),
+                       {float(x), -0.37f, 0.21f}, {1, 0.1f, 0}, {0, 1, 0.3f});
+        scene.lights.push_back({.intensity = glm::vec3(100), .position = {0, 0, 30}});
+        scene.cameras.push_back(scene::lookAt("camera", {3, 2, 30}, {0, 0, 0}, 12));
+        scene.motion = std::make_shared<scene::Motion>();
+        return scene;
+    };
+    const passes::Settings pt = settings(passes::Method::Pt);
+    for (int i = 0; i < 8; ++i) {
+        Renderer direct = moving(wallAt(0), pt), detour = moving(wallAt(0), pt);
+        detour.setScene(wallAt(7 + 3 * i), 1);
+        const double x = -0.9 + 0.11 * i;
+        for (Renderer* renderer : {&direct, &detour}) {
+            renderer->setScene(wallAt(x), 2);
+            renderer->renderFrame();
+        }
+        EXPECT_EQ(lastFrame(detour), lastFrame(direct)) << x;
+        EXPECT_NE(lastFrame(direct), Pixels(PIXELS, glm::vec3(0)));
+    }
+}
+
 // While it stays where it is, frames are those of a scene that rests.
 TEST_F(MovingRenderer, DoesNothingWhereItIsThereAlready)
 {
