@@ -27,7 +27,7 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
     if (moves) {
         poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes, bvhProgress, set);
         tables = std::make_unique<scene::GpuScene>(gpu, *poses);
-        poses->forgetTexels();
+        poses->forgetShared();
         take(poses->last());
         motion = scene.motion->fingerprint();
         show(0, scene);

@@ -65,7 +65,7 @@ BuildNode* newNode(RTCThreadLocalAllocator allocator)
 }
 
 struct BuildContext {
-    const BvhInput* input = nullptr;
+    const BvhInput* input = nullptr; // null: of boxes that are not split
     std::span<const TrianglePair> pairs;
     std::mutex mutex; // of progress: Embree's threads report
     double reported = 0;
@@ -174,14 +174,12 @@ std::vector<uint32_t> usableTriangles(const BvhInput& input)
     return usable;
 }
 
-std::vector<RTCBuildPrimitive> primitivesOf(const BvhInput& input, std::span<const TrianglePair> pairs)
+std::vector<RTCBuildPrimitive> primitivesOf(std::span<const Box> boxes)
 {
     std::vector<RTCBuildPrimitive> primitives;
-    primitives.reserve(pairs.size());
-    for (const TrianglePair& pair : pairs) {
-        const auto [lower, upper] = boxOf(input, pair);
+    primitives.reserve(boxes.size());
+    for (const auto& [lower, upper] : boxes)
         primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, uint32_t(primitives.size())});
-    }
     return primitives;
 }
 
@@ -198,14 +196,13 @@ uint32_t flatten(const BuildNode& node, const Box& box, BinaryTree& out)
     return uint32_t(out.size() - 1);
 }
 
-BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> pairs, bool spatialSplits)
+// Over boxes, which the context's pairs of triangles have where they may be split.
+BinaryTree buildBinaryTree(BuildContext& context, std::span<const Box> boxes, bool spatialSplits)
 {
-    if (pairs.empty()) return {};
-    BuildContext context{.input = &input, .pairs = pairs};
-    std::vector<RTCBuildPrimitive> primitives = primitivesOf(input, pairs);
+    if (boxes.empty()) return {};
+    std::vector<RTCBuildPrimitive> primitives = primitivesOf(boxes);
     Box scene;
-    for (const RTCBuildPrimitive& p : primitives)
-        scene.extend({{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}});
+    for (const Box& box : boxes) scene.extend(box);
 
     const std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device(rtcNewDevice(nullptr), rtcReleaseDevice);
     if (!device) throw Error("Embree cannot start (error {}).", int(rtcGetDeviceError(nullptr)));
@@ -248,17 +245,26 @@ BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> 
         node->pair = leaf->primID;
         return node;
     };
-    arguments.splitPrimitive = splitPrimitive;
-    if (input.progress) arguments.buildProgress = reportProgress;
+    if (spatialSplits) arguments.splitPrimitive = splitPrimitive;
+    if (context.input && context.input->progress) arguments.buildProgress = reportProgress;
     arguments.userPtr = &context;
     const void* root = run(arguments, context);
     if (root == nullptr)
-        throw Error("Embree cannot build a tree over {} pairs of triangles (error {}).", count,
+        throw Error("Embree cannot build a tree over {} boxes (error {}).", count,
                     int(rtcGetDeviceError(device.get())));
     BinaryTree tree;
     tree.reserve(2 * primitives.size());
     flatten(*static_cast<const BuildNode*>(root), scene, tree);
     return tree;
+}
+
+BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> pairs, bool spatialSplits)
+{
+    BuildContext context{.input = &input, .pairs = pairs};
+    std::vector<Box> boxes;
+    boxes.reserve(pairs.size());
+    for (const TrianglePair& pair : pairs) boxes.push_back(boxOf(input, pair));
+    return buildBinaryTree(context, boxes, spatialSplits);
 }
 
 uint64_t bytesOf(uint64_t rows, uint32_t stride)
@@ -328,6 +334,29 @@ Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes)
     bvh.stats.buildSeconds = secondsSince(start);
     if (input.progress) input.progress(1.0);
     return bvh;
+}
+
+std::vector<glm::uvec4> movedNodes(std::span<const glm::uvec4> rows, uint32_t nodes, uint32_t records)
+{
+    std::vector<glm::uvec4> copy(rows.begin(), rows.end());
+    for (size_t i = 1; i < copy.size(); i += shared::BVH_NODE_STRIDE) {
+        copy[i].y += nodes << 8;
+        copy[i].z += records;
+    }
+    return copy;
+}
+
+BoxTree buildBoxTree(std::span<const Box> boxes)
+{
+    BuildContext context;
+    WideTree tree = collapse(buildBinaryTree(context, boxes, false));
+    return {.nodes = encodeNodes(tree, layOut(tree), magnitudeOf(tree)), .order = std::move(tree.pairs)};
+}
+
+uint32_t roomForNodesOver(size_t boxes)
+{
+    // Most have more than two children, and the layout has few gaps.
+    return uint32_t(2 * std::max<size_t>(boxes, 1) + 64) * shared::BVH_NODE_STRIDE;
 }
 
 std::vector<RowRange> rangesOf(std::span<const uint32_t> items, uint32_t stride)

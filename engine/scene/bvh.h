@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,6 +15,23 @@
 
 namespace scene
 {
+
+struct Box {
+    glm::vec3 lower = glm::vec3(std::numeric_limits<float>::infinity());
+    glm::vec3 upper = glm::vec3(-std::numeric_limits<float>::infinity());
+
+    void extend(const Box& other)
+    {
+        lower = glm::min(lower, other.lower);
+        upper = glm::max(upper, other.upper);
+    }
+    float halfArea() const
+    {
+        const glm::vec3 size = upper - lower;
+        return size.x * size.y + size.y * size.z + size.z * size.x;
+    }
+    glm::vec3 center() const { return 0.5f * lower + 0.5f * upper; }
+};
 
 struct BvhStats {
     uint64_t nodes = 0;
@@ -41,6 +59,17 @@ struct BvhInput {
 // Degenerate and non-finite triangles are left out. No triangle at all gives a tree that nothing hits.
 // Throws Error when the tree cannot fit `maxTableBytes`, for each of the two tables.
 Bvh buildBvh(const BvhInput& input, uint64_t maxTableBytes);
+
+// Whole nodes of a tree that lies behind others, whose nodes and records are that many.
+std::vector<glm::uvec4> movedNodes(std::span<const glm::uvec4> rows, uint32_t nodes, uint32_t records);
+
+// A tree over boxes, with one record for each: record i is that of boxes[order[i]].
+struct BoxTree {
+    std::vector<glm::uvec4> nodes; // table "Nodes"
+    std::vector<uint32_t> order;
+};
+BoxTree buildBoxTree(std::span<const Box> boxes); // none: a tree that nothing meets
+uint32_t roomForNodesOver(size_t boxes);          // rows of table "Nodes": more than such trees were seen to need
 
 // Rows of a table, from `first` up to `end`.
 struct RowRange {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,23 +19,6 @@ constexpr uint32_t BVH_MAX_BINARY_DEPTH =
     3 * 31; // collapsing by height takes three levels at once: fits BVH_STACK_SIZE
 constexpr float BVH_NODE_COST = 1.0f;
 constexpr float BVH_PAIR_COST = 0.7f; // measured on lavapipe, tests/bench/LOG.md
-
-struct Box {
-    glm::vec3 lower = glm::vec3(std::numeric_limits<float>::infinity());
-    glm::vec3 upper = glm::vec3(-std::numeric_limits<float>::infinity());
-
-    void extend(const Box& other)
-    {
-        lower = glm::min(lower, other.lower);
-        upper = glm::max(upper, other.upper);
-    }
-    float halfArea() const
-    {
-        const glm::vec3 size = upper - lower;
-        return size.x * size.y + size.y * size.z + size.z * size.x;
-    }
-    glm::vec3 center() const { return 0.5f * lower + 0.5f * upper; }
-};
 
 // Two triangles with a common edge, or one. The edge is that of vertices turn + 1 and turn + 2 (mod 3) of each.
 struct TrianglePair {

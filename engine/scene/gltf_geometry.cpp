@@ -1,16 +1,15 @@
 #include "engine/scene/gltf_geometry.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include "engine/base/error.h"
+#include "engine/scene/gltf_instances.h"
 #include "engine/scene/gltf_mesh_part.h"
-#include "engine/scene/gltf_values.h"
 
 namespace scene::gltf
 {
@@ -20,89 +19,39 @@ namespace
 
 constexpr uint64_t MAX_GEOMETRY_BYTES = uint64_t{1} << 31; // instances multiply what a small file can ask for
 
-// Of EXT_mesh_gpu_instancing: translations, rotations and scales, those that there are.
-std::array<const Accessor*, 3> instancingOf(MeshPartReader& reader, const tinygltf::Node& node)
+// What geometry takes, counted before it is allocated. Throws Error where that is too much.
+class Budget
 {
-    std::array<const Accessor*, 3> accessors = {};
-    const tinygltf::Value* instancing = findExtension(node.extensions, "EXT_mesh_gpu_instancing");
-    for (size_t i = 0; instancing && i < accessors.size(); ++i) {
-        const std::string name = std::array{"TRANSLATION", "ROTATION", "SCALE"}[i];
-        const tinygltf::Value& attributes = instancing->Get("attributes");
-        if (attributes.Has(name)) accessors[i] = &reader.accessor(attributes.Get(name).GetNumberAsInt());
-    }
-    return accessors;
-}
-
-size_t instanceCount(const std::array<const Accessor*, 3>& instancing)
-{
-    const auto any = std::ranges::find_if(instancing, [](const Accessor* accessor) { return accessor != nullptr; });
-    return any == instancing.end() ? 1 : (*any)->count();
-}
-
-// EXT_mesh_gpu_instancing: translation, rotation and scale of each instance inside the node; else the node itself.
-std::vector<glm::dmat4> instancesOf(MeshPartReader& reader, const tinygltf::Node& node, Warnings& warnings)
-{
-    const auto accessors = instancingOf(reader, node);
-    const auto [translations, rotations, scales] = accessors;
-    std::vector<glm::dmat4> instances(instanceCount(accessors), glm::dmat4(1));
-    for (size_t i = 0; i < instances.size(); ++i) {
-        if (translations) instances[i] = glm::translate(instances[i], translations->vec3(i));
-        if (rotations) {
-            const glm::dquat rotation(rotations->number(i, 3), rotations->number(i, 0), rotations->number(i, 1),
-                                      rotations->number(i, 2));
-            const double length = std::sqrt(glm::dot(rotation, rotation));
-            if (length > 0)
-                instances[i] *= glm::mat4_cast(rotation / length);
-            else
-                warnings.add("Ignored the rotation of an instance, which is zero.");
+  public:
+    Budget(const Document& document)
+    {
+        for (const tinygltf::Mesh& mesh : document.model.meshes) {
+            double& bytes = meshBytes_.emplace_back(0); // no overflow, and exact far beyond the limit
+            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+                const auto [vertices, triangles] = sizeOf(document, primitive);
+                bytes += double(triangles) * sizeof(Triangle) + double(vertices) * VERTEX_BYTES;
+            }
         }
-        if (scales) instances[i] = glm::scale(instances[i], scales->vec3(i));
     }
-    return instances;
-}
+    void addCopies(size_t mesh, size_t count) { add(meshBytes_[mesh] * double(count)); }
+    void addInstances(size_t count) { add(double(count) * INSTANCE_BYTES); }
 
-bool isDrawable(const Document& document, const tinygltf::Primitive& primitive)
-{
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end() || primitive.mode < TINYGLTF_MODE_TRIANGLES) return false;
-    const tinygltf::Accessor& accessor = document.model.accessors[static_cast<size_t>(position->second)];
-    return accessor.bufferView >= 0 || accessor.sparse.isSparse; // else all vertices coincide
-}
-
-// An upper bound, before anything is allocated.
-void checkSize(const Document& document, const NodeTree& tree, MeshPartReader& reader)
-{
-    constexpr uint64_t VERTEX_BYTES =
+  private:
+    static constexpr size_t VERTEX_BYTES =
         sizeof(glm::dvec3) + 2 * sizeof(glm::vec3) + 2 * sizeof(glm::vec4) + 2 * sizeof(glm::vec2);
-    const auto bytesOf = [&](const tinygltf::Mesh& mesh) {
-        uint64_t bytes = 0;
-        for (const tinygltf::Primitive& primitive : mesh.primitives) {
-            if (!isDrawable(document, primitive)) continue;
-            const uint64_t elements =
-                document.model.accessors[static_cast<size_t>(primitive.attributes.at("POSITION"))].count;
-            const uint64_t corners = primitive.indices < 0
-                                         ? elements
-                                         : document.model.accessors[static_cast<size_t>(primitive.indices)].count;
-            const uint64_t triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
-            const bool flat = !primitive.attributes.contains("NORMAL");
-            bytes += triangles * sizeof(Triangle) +
-                     (flat ? 3 * triangles : std::min(elements, 3 * triangles)) * VERTEX_BYTES;
-        }
-        return bytes;
-    };
-    std::vector<uint64_t> meshBytes;
-    for (const tinygltf::Mesh& mesh : document.model.meshes) meshBytes.push_back(bytesOf(mesh));
-    double bytes = 0; // no overflow, and exact far beyond the limit
-    for (const uint32_t i : tree.visible) {
-        const tinygltf::Node& node = document.model.nodes[i];
-        if (node.mesh >= 0 && !tree.hidden[i])
-            bytes += static_cast<double>(meshBytes[static_cast<size_t>(node.mesh)]) *
-                     static_cast<double>(instanceCount(instancingOf(reader, node)));
+    static constexpr size_t INSTANCE_BYTES = sizeof(Instance) + 3 * sizeof(glm::dmat4); // and its tables
+
+    void add(double bytes)
+    {
+        bytes_ += bytes;
+        if (bytes_ > double(MAX_GEOMETRY_BYTES))
+            throw Error("The meshes with all their instances need {:.0f} bytes, more than the limit of {}.", bytes_,
+                        MAX_GEOMETRY_BYTES);
     }
-    if (bytes > static_cast<double>(MAX_GEOMETRY_BYTES))
-        throw Error("The meshes with all their instances need {:.0f} bytes, more than the limit of {}.", bytes,
-                    MAX_GEOMETRY_BYTES);
-}
+
+    std::vector<double> meshBytes_;
+    double bytes_ = 0;
+};
 
 std::vector<glm::dmat4> skinMatrices(const Document& document, const NodeTree& tree, MeshPartReader& reader,
                                      int skinIndex)
@@ -126,7 +75,7 @@ void append(std::vector<T>& array, size_t before, const MeshPart& part, bool has
     for (const Vertex& vertex : part.vertices) array.push_back(has ? T(get(vertex)) : absent);
 }
 
-void append(Scene& scene, std::vector<glm::dvec3>& positions, const MeshPart& part, uint32_t material)
+void append(Geometry& scene, std::vector<glm::dvec3>& positions, const MeshPart& part, uint32_t material)
 {
     const size_t before = positions.size();
     for (const Vertex& vertex : part.vertices) {
@@ -143,32 +92,58 @@ void append(Scene& scene, std::vector<glm::dvec3>& positions, const MeshPart& pa
         scene.triangles.push_back({{first + a, first + b, first + c}, material});
 }
 
+// Of the triangles whose corners are all finite; lower > upper: there are none.
+Extent extentOf(const Geometry& geometry, const std::vector<glm::dvec3>& positions)
+{
+    constexpr double INF = std::numeric_limits<double>::infinity();
+    Extent extent{glm::dvec3(INF), glm::dvec3(-INF)};
+    for (const Triangle& triangle : geometry.triangles) {
+        if (!std::ranges::all_of(triangle.vertices, [&](uint32_t v) { return isFinite(positions[v]); })) continue;
+        for (const uint32_t v : triangle.vertices) extend(extent, {positions[v], positions[v]});
+    }
+    return extent;
+}
+
+// Positions relative to the origin, in float32.
+void round(Geometry& geometry, const std::vector<glm::dvec3>& positions, const Extent& extent, const glm::dvec3& origin,
+           double scale = 1)
+{
+    geometry.positions.reserve(positions.size());
+    for (const glm::dvec3& position : positions) {
+        const bool used = glm::all(glm::lessThanEqual(extent.lower, position)) &&
+                          glm::all(glm::lessThanEqual(position, extent.upper));
+        geometry.positions.push_back(used ? glm::vec3((position - origin) * scale)
+                                          : glm::vec3(0)); // of dropped triangles only
+    }
+}
+
+bool hasArea(const Geometry& geometry, const Triangle& triangle)
+{
+    const glm::dvec3 a = geometry.positions[triangle.vertices[0]];
+    const glm::dvec3 b = geometry.positions[triangle.vertices[1]];
+    const glm::dvec3 c = geometry.positions[triangle.vertices[2]];
+    return glm::length(glm::cross(b - a, c - a)) >= SMALLEST_AREA;
+}
+
 // Moves the box's centre to the origin and rounds to float32; what has no area then is dropped, unless it moves. Of
 // what moves, triangles may not be finite: at rest they are points.
 void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Motion* motion, Warnings& warnings)
 {
-    constexpr double INF = std::numeric_limits<double>::infinity();
-    glm::dvec3 low(INF), high(-INF);
-    for (const Triangle& triangle : scene.triangles) {
-        if (!std::ranges::all_of(triangle.vertices, [&](uint32_t v) { return isFinite(positions[v]); })) continue;
-        for (const uint32_t v : triangle.vertices) {
-            low = glm::min(low, positions[v]);
-            high = glm::max(high, positions[v]);
-        }
-    }
-    if (low.x <= high.x) { // there is one
-        const glm::dvec3 size = high - low;
+    const Extent flat = extentOf(scene, positions);
+    Extent all = flat;
+    std::vector<Box> boxes;
+    for (const Geometry& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
+    for (const Instance& instance : scene.instances)
+        extend(all, extentOf(boxes[instance.mesh], instance.worldFromMesh));
+    if (all.lower.x <= all.upper.x) { // there is a triangle
+        const glm::dvec3 size = all.upper - all.lower;
         const double largest = std::max({size.x, size.y, size.z});
         if (!(largest <= LARGEST_SCENE))
             throw Error("The scene is {} m across, more than the limit of {} m.", largest, LARGEST_SCENE);
-        scene.origin = 0.5 * low + 0.5 * high;
+        scene.origin = 0.5 * all.lower + 0.5 * all.upper;
     }
-    scene.positions.reserve(positions.size());
-    for (const glm::dvec3& position : positions) {
-        const bool used = glm::all(glm::lessThanEqual(low, position)) && glm::all(glm::lessThanEqual(position, high));
-        scene.positions.push_back(used ? glm::vec3(position - scene.origin)
-                                       : glm::vec3(0)); // of dropped triangles only
-    }
+    round(scene, positions, flat, scene.origin);
+    for (Instance& instance : scene.instances) instance.worldFromMesh[3] -= glm::dvec4(scene.origin, 0);
     size_t kept = 0, part = 0;
     const size_t parts = motion ? motion->parts.size() : 0, before = scene.triangles.size();
     for (size_t i = 0, end = 0; i < before; ++i) { // end: of the part that moves
@@ -177,57 +152,136 @@ void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Motion* moti
             motion->parts[part].firstTriangle = static_cast<uint32_t>(kept);
         }
         const Triangle triangle = scene.triangles[i];
-        const glm::dvec3 a = scene.positions[triangle.vertices[0]];
-        const glm::dvec3 b = scene.positions[triangle.vertices[1]];
-        const glm::dvec3 c = scene.positions[triangle.vertices[2]];
-        if (i < end || glm::length(glm::cross(b - a, c - a)) >= SMALLEST_AREA) scene.triangles[kept++] = triangle;
+        if (i < end || hasArea(scene, triangle)) scene.triangles[kept++] = triangle;
     }
     scene.triangles.resize(kept);
     const size_t dropped = before - kept;
     if (dropped > 0) warnings.add("Dropped a triangle without area.", dropped);
 }
 
+std::string nameOf(int mesh, size_t primitive)
+{
+    return fmt::format("meshes[{}].primitives[{}]", mesh, primitive);
+}
+
+// Meshes that are stored once, as they are first met.
+class StoredMeshes
+{
+  public:
+    StoredMeshes(const Document& document, MeshPartReader& reader, Warnings& warnings)
+        : document_(document), reader_(reader), warnings_(warnings)
+    {
+    }
+
+    // Of this mesh of the file. Its space is moved and scaled by a power of two, so that coordinates are at most 1 or
+    // so: no digits of where it lies in the file are lost, and few in the transform.
+    void place(Scene& scene, int mesh, const glm::dmat4& worldFromFile)
+    {
+        const auto [found, isNew] = meshes_.try_emplace(mesh);
+        if (isNew) found->second = read(scene, mesh);
+        const Stored& stored = found->second;
+        if (stored.mesh == NONE) return;
+        scene.instances.push_back({stored.mesh, glm::scale(glm::translate(worldFromFile, stored.middle),
+                                                           glm::dvec3(stored.size))});
+    }
+
+  private:
+    struct Stored {
+        uint32_t mesh = NONE; // Scene::meshes; NONE: it has no triangle
+        glm::dvec3 middle = {0, 0, 0};
+        double size = 1;
+    };
+
+    Stored read(Scene& scene, int index)
+    {
+        const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<size_t>(index)];
+        Geometry geometry;
+        std::vector<glm::dvec3> positions;
+        for (size_t i = 0; i < mesh.primitives.size(); ++i) {
+            if (!isDrawable(document_, mesh.primitives[i])) continue;
+            const uint32_t material = materialOf(mesh.primitives[i], scene.materials.size());
+            append(geometry, positions,
+                   reader_.read(mesh.primitives[i], nameOf(index, i), {}, scene.materials[material]), material);
+        }
+        const Extent extent = extentOf(geometry, positions);
+        const glm::dvec3 half = 0.5 * (extent.upper - extent.lower);
+        const double radius = std::max({half.x, half.y, half.z});
+        if (!(radius > 0)) return {};
+        const Stored stored{.mesh = static_cast<uint32_t>(scene.meshes.size()),
+                            .middle = 0.5 * (extent.lower + extent.upper),
+                            .size = std::exp2(std::round(std::log2(radius)))};
+        round(geometry, positions, extent, stored.middle, 1 / stored.size);
+        const size_t dropped =
+            std::erase_if(geometry.triangles, [&](const Triangle& triangle) { return !hasArea(geometry, triangle); });
+        if (dropped > 0) warnings_.add("Dropped a triangle without area.", dropped);
+        if (geometry.triangles.empty()) return {};
+        scene.meshes.push_back(std::move(geometry));
+        return stored;
+    }
+
+    const Document& document_;
+    MeshPartReader& reader_;
+    Warnings& warnings_;
+    std::map<int, Stored> meshes_;
+};
+
 } // namespace
 
-MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Warnings& warnings,
-                        const std::function<void(double)>& progress)
+MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Instancing instancing,
+                        Warnings& warnings, const std::function<void(double)>& progress)
 {
     const tinygltf::Model& model = document.model;
     MeshPartReader reader(document, warnings);
-    checkSize(document, tree, reader);
     MotionPlan plan = planMotion(document, tree, reader, warnings);
+    const std::vector<bool> storedOnce =
+        chooseStoredOnce(document, tree, reader, plan.movesMesh, scene.materials, instancing);
+    const auto isMesh = [&](uint32_t node) { return model.nodes[node].mesh >= 0 && !tree.hidden[node]; };
+    const auto moves = [&](uint32_t node) { return plan.motion && plan.movesMesh[node]; };
+    const auto isStoredOnce = [&](uint32_t node) {
+        return storedOnce[static_cast<size_t>(model.nodes[node].mesh)] && model.nodes[node].skin < 0 && !moves(node);
+    };
+    Budget budget(document);
+    for (size_t m = 0; m < storedOnce.size(); ++m) budget.addCopies(m, storedOnce[m]);
+    for (const uint32_t n : tree.visible) {
+        if (!isMesh(n)) continue;
+        const size_t count = instanceCount(reader, model.nodes[n]);
+        isStoredOnce(n) ? budget.addInstances(count) : budget.addCopies(size_t(model.nodes[n].mesh), count);
+    }
 
     std::vector<glm::dvec3> positions;
+    StoredMeshes stored(document, reader, warnings);
     for (size_t n = 0; n < tree.visible.size(); ++n) {
         if (progress && n % 64 == 0) progress(static_cast<double>(n) / static_cast<double>(tree.visible.size()));
         const uint32_t nodeIndex = tree.visible[n];
+        if (!isMesh(nodeIndex)) continue;
         const tinygltf::Node& node = model.nodes[nodeIndex];
-        if (node.mesh < 0 || tree.hidden[nodeIndex]) continue;
         const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
         Placement placement;
         placement.morphWeights = node.weights.empty() ? mesh.weights : node.weights;
         if (node.skin >= 0) placement.worldFromSkin = skinMatrices(document, tree, reader, node.skin);
         for (const glm::dmat4& instance : instancesOf(reader, node, warnings)) {
             placement.worldFromMesh = tree.worldFromNode[nodeIndex] * instance;
+            const bool once = isStoredOnce(nodeIndex), suits = once && suitsInstance(placement.worldFromMesh);
+            if (once && !suits) budget.addCopies(size_t(node.mesh), 1);
+            if (suits) stored.place(scene, node.mesh, placement.worldFromMesh);
             for (size_t i = 0; i < mesh.primitives.size(); ++i) {
                 const tinygltf::Primitive& primitive = mesh.primitives[i];
-                const std::string where = fmt::format("meshes[{}].primitives[{}]", node.mesh, i);
+                const std::string where = nameOf(node.mesh, i);
                 if (!isDrawable(document, primitive)) {
                     warnings.add(fmt::format("Ignored {}: it has no positions, or only points or lines.", where));
                     continue;
                 }
-                const size_t index =
-                    primitive.material < 0 ? scene.materials.size() - 1 : static_cast<size_t>(primitive.material);
+                if (suits) continue;
+                const uint32_t index = materialOf(primitive, scene.materials.size());
                 const Material& material = scene.materials[index];
                 const Motion::Part part{.name = where,
                                         .nodeFromMesh = instance,
                                         .firstVertex = static_cast<uint32_t>(positions.size()),
                                         .firstTriangle = static_cast<uint32_t>(scene.triangles.size())};
                 append(scene, positions,
-                       plan.motion && plan.movesMesh[nodeIndex]
-                           ? addPart(plan, document, reader, i, nodeIndex, placement, part, material)
-                           : reader.read(primitive, where, placement, material),
-                       static_cast<uint32_t>(index));
+                       moves(nodeIndex) ? addPart(plan, document, reader, i, nodeIndex, placement, part, material)
+                                        : reader.read(primitive, where, placement, material),
+                       index);
             }
         }
     }

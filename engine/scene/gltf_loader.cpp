@@ -8,6 +8,7 @@
 #include "engine/scene/gltf_geometry.h"
 #include "engine/scene/gltf_images.h"
 #include "engine/scene/gltf_nodes.h"
+#include "engine/scene/instances.h"
 
 namespace scene
 {
@@ -19,15 +20,19 @@ namespace
 std::vector<uint32_t> keepUsedMaterials(Scene& scene)
 {
     std::vector<uint32_t> newIndex(scene.materials.size(), NONE);
-    std::vector<Material> used;
-    for (const Triangle& triangle : scene.triangles) newIndex[triangle.material] = 0;
+    const std::vector<bool> used = usedMaterials(scene);
+    std::vector<Material> kept;
     for (size_t i = 0; i < scene.materials.size(); ++i) {
-        if (newIndex[i] == NONE) continue;
-        newIndex[i] = static_cast<uint32_t>(used.size());
-        used.push_back(std::move(scene.materials[i]));
+        if (!used[i]) continue;
+        newIndex[i] = static_cast<uint32_t>(kept.size());
+        kept.push_back(std::move(scene.materials[i]));
     }
-    for (Triangle& triangle : scene.triangles) triangle.material = newIndex[triangle.material];
-    scene.materials = std::move(used);
+    const auto rename = [&](Geometry& geometry) {
+        for (Triangle& triangle : geometry.triangles) triangle.material = newIndex[triangle.material];
+    };
+    rename(scene);
+    std::ranges::for_each(scene.meshes, rename);
+    scene.materials = std::move(kept);
     return newIndex;
 }
 
@@ -38,6 +43,7 @@ double boundingRadius(const Scene& scene)
         for (const uint32_t v : triangle.vertices)
             squared = std::max(squared, glm::dot(scene.positions[v], scene.positions[v]));
     }
+    squared = std::max(squared, static_cast<float>(squaredRadiusOfInstances(scene)));
     return squared > 0 ? std::sqrt(static_cast<double>(squared)) : 1;
 }
 
@@ -102,7 +108,8 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     Scene scene;
     scene.name = file.stem().string();
     scene.materials = std::move(document.materials);
-    gltf::MotionPlan plan = gltf::readGeometry(document, tree, scene, warnings, report("Building geometry"));
+    gltf::MotionPlan plan = 
+        gltf::readGeometry(document, tree, scene, options.instancing, warnings, report("Building geometry"));
     const std::vector<uint32_t> materialOf = keepUsedMaterials(scene);
     scene.files = document.files;
     scene.images = gltf::readImages(document, scene.materials, scene.files, report("Decoding images"));
@@ -117,7 +124,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
         pose(scene, {}, 0); // hides what is not visible or has no area
     }
     if (options.sky) addSkyWhenDark(scene, warnings);
-    if (scene.triangles.empty()) warnings.add("The scene has no triangle.");
+    if (scene.triangles.empty() && scene.instances.empty()) warnings.add("The scene has no triangle.");
     scene.warnings = warnings.sentences();
     return scene;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "engine/scene/instances.h"
 #include "engine/scene/scene.h"
 
 namespace scene
@@ -15,6 +16,7 @@ struct LoadOptions {
         progress;           // may be empty; called on the caller's thread
     bool sky = true;        // a file without light gets a uniform sky; false: the caller has an environment for it
     bool animations = true; // false: they are checked for structure and not read; nothing moves
+    Instancing instancing = Instancing::Auto;
     std::filesystem::path assetRoot; // buffers and textures may lie below it, too; empty: below the file's folder alone
 };
 

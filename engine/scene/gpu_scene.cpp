@@ -29,26 +29,6 @@ std::shared_ptr<const gpu::Buffer> uploadTexels(gpu::Device& device, std::span<c
     return table;
 }
 
-TableSizes sizesOf(const SceneTables& tables)
-{
-    return {.nodes = uint32_t(tables.bvh.nodes.size()),
-            .triangles = uint32_t(tables.bvh.triangles.size()),
-            .attributes = uint32_t(tables.attributes.size()),
-            .sceneData = uint32_t(tables.sceneData.size()),
-            .depth = tables.bvh.stats.depth};
-}
-
-// Whole nodes of a tree that lies behind other nodes and records.
-std::vector<glm::uvec4> moved(std::span<const glm::uvec4> nodes, uint32_t firstNode, uint32_t firstRecord)
-{
-    std::vector<glm::uvec4> copy(nodes.begin(), nodes.end());
-    for (size_t i = 1; i < copy.size(); i += shared::BVH_NODE_STRIDE) {
-        copy[i].y += firstNode << 8;
-        copy[i].z += firstRecord;
-    }
-    return copy;
-}
-
 std::span<const glm::uvec4> rowsOf(const std::vector<glm::uvec4>& table, const RowRange& range)
 {
     return std::span(table).subspan(range.first, range.end - range.first);
@@ -67,17 +47,27 @@ TraversalStack traversalStack(const gpu::Adapter& adapter, const BvhStats& bvh)
 
 GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables, const TableSizes& room, uint32_t worlds,
                    std::shared_ptr<const gpu::Buffer> texels)
-    : room_(room), texels_(texels ? std::move(texels) : uploadTexels(device, tables.texels)),
-      nodes_(createTable(device, "Nodes", uint64_t{worlds} * room.nodes)),
-      triangles_(createTable(device, "Triangles", uint64_t{worlds} * room.triangles)),
-      attributes_(createTable(device, "Attributes", uint64_t{worlds} * room.attributes)),
+    : room_(room), first_({.node = worlds * (room.nodes + room.placeNodes),
+                           .record = worlds * (room.triangles + room.placeRecords),
+                           .attribute = worlds * room.attributes}),
+      texels_(texels ? std::move(texels) : uploadTexels(device, tables.texels)),
+      nodes_(createTable(device, "Nodes", uint64_t{first_.node} + room.meshNodes)),
+      triangles_(createTable(device, "Triangles", uint64_t{first_.record} + room.meshRecords)),
+      attributes_(createTable(device, "Attributes", uint64_t{first_.attribute} + room.meshAttributes)),
       sceneData_(createTable(device, "SceneData", tables.environment.size() + uint64_t{worlds} * room.sceneData)),
       uniform_(device.createBuffer({.label = "Scene", .size = sizeof(worlds_), .usage = gpu::Usage::Uniform})),
       stack_(traversalStack(device.adapter(), {.depth = room.depth}))
 {
     writeRows(device, sceneData_, tables.environment, 0);
+    const MeshTables& meshes = tables.meshes;
+    writeRows(device, nodes_,
+              movedNodes(meshes.nodes, first_.node / shared::BVH_NODE_STRIDE, first_.record / shared::BVH_RECORD_STRIDE),
+              first_.node);
+    writeRows(device, triangles_, meshes.triangles, first_.record);
+    writeRows(device, attributes_, meshes.attributes, first_.attribute);
     for (const std::vector<glm::uvec4>* rows : {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes,
-                                                &tables.texels, &tables.environment, &tables.sceneData})
+                                                &tables.texels, &tables.environment, &tables.sceneData, &meshes.nodes,
+                                                &meshes.triangles, &meshes.attributes, &tables.places.records})
         contents_ = fingerprint(std::as_bytes(std::span(*rows)), contents_);
     contents_ = fingerprint(std::as_bytes(std::span(&tables.uniform, 1)), contents_);
 }
@@ -106,15 +96,20 @@ GpuScene::GpuScene(gpu::Device& device, const MovingTables& tables, const GpuSce
 
 void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pose, const TableChanges& changes)
 {
-    const uint32_t node = world * room_.nodes, record = world * room_.triangles, data = world * room_.sceneData;
+    const uint32_t node = world * (room_.nodes + room_.placeNodes);
+    const uint32_t record = world * (room_.triangles + room_.placeRecords);
+    const uint32_t data = world * room_.sceneData;
     CHECK(pose.bvh.nodes.size() <= room_.nodes && pose.bvh.triangles.size() <= room_.triangles);
     CHECK(pose.attributes.size() <= room_.attributes && pose.sceneData.size() <= room_.sceneData);
+    CHECK(pose.places.nodes.size() <= room_.placeNodes && pose.places.records.size() <= room_.placeRecords);
     CHECK_LE(pose.bvh.stats.depth, room_.depth);
     shared::SceneUniform& uniform = worlds_[world];
     uniform = pose.uniform;
     uniform.rootNode = node / shared::BVH_NODE_STRIDE;
     uniform.attributeOffset = world * room_.attributes;
-    for (uint32_t* offset : {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset}) *offset += data;
+    for (uint32_t* offset : {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset, &uniform.instanceOffset})
+        *offset += data;
+    uniform.instanceRoot = (node + room_.nodes) / shared::BVH_NODE_STRIDE;
 
     const bool all = versions_[world] != changes.tree.version; // or else what is there differs in some rows only
     versions_[world] = changes.tree.version;
@@ -127,7 +122,7 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     };
     eachRange(changes.tree.nodes, pose.bvh.nodes, [&](const RowRange& range) {
         writeRows(device, nodes_,
-                  moved(rowsOf(pose.bvh.nodes, range), uniform.rootNode, record / shared::BVH_RECORD_STRIDE),
+                  movedNodes(rowsOf(pose.bvh.nodes, range), uniform.rootNode, record / shared::BVH_RECORD_STRIDE),
                   node + range.first);
     });
     eachRange(changes.tree.triangles, pose.bvh.triangles, [&](const RowRange& range) {
@@ -136,7 +131,18 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     eachRange(changes.attributes, pose.attributes, [&](const RowRange& range) {
         writeRows(device, attributes_, rowsOf(pose.attributes, range), uniform.attributeOffset + range.first);
     });
-    writeRows(device, sceneData_, pose.sceneData, pose.environment.size() + data);
+    writeRows(device, nodes_,
+              movedNodes(pose.places.nodes, uniform.instanceRoot,
+                         (record + room_.triangles) / shared::BVH_RECORD_STRIDE),
+              node + room_.nodes);
+    std::vector<glm::uvec4> records = pose.places.records;
+    for (size_t i = 3; i < records.size(); i += shared::BVH_RECORD_STRIDE)
+        records[i].x += first_.node / shared::BVH_NODE_STRIDE;
+    writeRows(device, triangles_, records, record + room_.triangles);
+    std::vector<glm::uvec4> rows = pose.sceneData;
+    for (size_t i = 0; i < pose.places.rows.size(); i += shared::INSTANCE_ROWS)
+        rows[pose.uniform.instanceOffset - pose.environment.size() + i + 3].x += first_.attribute;
+    writeRows(device, sceneData_, rows, pose.environment.size() + data);
     device.queue().write(uniform_, std::as_bytes(std::span(worlds_)));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The scene on the device: the tables of SceneTables as buffers, bound as set 1 of every stage. A scene that moves is
-// there as two worlds, one after the other in each table (shaders/shared/scene.h).
+// there as two worlds, one after the other in each table (shaders/shared/scene.h); what worlds share comes
+// last.
 
 #include <array>
 #include <memory>
@@ -44,6 +45,9 @@ class GpuScene
              std::shared_ptr<const gpu::Buffer> texels);
 
     TableSizes room_; // of a world
+    struct {
+        uint32_t node = 0, record = 0, attribute = 0;
+    } first_; // rows of the meshes that are stored once, behind those of all worlds
     std::array<shared::SceneUniform, 2> worlds_ = {};
     std::array<std::optional<uint64_t>, 2> versions_; // of the trees that are there
     std::shared_ptr<const gpu::Buffer> texels_;

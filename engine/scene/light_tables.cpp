@@ -53,8 +53,10 @@ glm::dvec3 scaledIntensity(const PunctualLight& light, double lengthScale)
 double largestLight(const Scene& scene, double lengthScale)
 {
     double value = 0;
-    for (const Triangle& triangle : scene.triangles) {
-        const Material& material = scene.materials[triangle.material];
+    const std::vector<bool> used = usedMaterials(scene);
+    for (size_t i = 0; i < used.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (!used[i]) continue;
         value = std::max(value, largest(glm::dvec3(material.emission)));
         if (material.unlit) value = std::max(value, largest(glm::dvec3(glm::vec3(material.baseColor))));
     }

@@ -80,8 +80,7 @@ class Builder
 
     MaterialTables build(bool moves)
     {
-        std::vector<bool> used(scene_.materials.size());
-        for (const Triangle& triangle : scene_.triangles) used[triangle.material] = true;
+        const std::vector<bool> used = usedMaterials(scene_);
         for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(plain(scene_.materials[i]), used[i]);
         if (moves) {
             for (const Motion::Paint& paint : scene_.motion->paints)
@@ -169,7 +168,8 @@ class Builder
         f.HAS_UNLIT |= material.unlit;
         f.HAS_ALPHA |= material.alpha != Alpha::Opaque;
         f.blend |= material.alpha == Alpha::Blend;
-        f.HAS_VERTEX_COLORS |= !scene_.colors.empty();
+        f.HAS_VERTEX_COLORS |= !scene_.colors.empty() ||
+                               std::ranges::any_of(scene_.meshes, [](const Geometry& g) { return !g.colors.empty(); });
         noteTexture(material.baseColorTexture, f.HAS_BASE_COLOR_TEXTURE);
         noteTexture(material.normalTexture, f.HAS_NORMAL_MAP);
         if (material.emission != glm::vec3(0)) noteTexture(material.emissiveTexture, f.HAS_EMISSIVE_TEXTURE);

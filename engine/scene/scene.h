@@ -1,6 +1,6 @@
 #pragma once
-// A scene as plain data, one flat world: instances are expanded, transforms applied. Loaders and generators fill it,
-// Bvh and GpuScene read it. Units: metres, radians, radiance W/(sr m^2) per channel (linear Rec. 709 primaries).
+// A scene as plain data, one flat world with transforms applied, but for meshes that are stored once and stand in many
+// places. Loaders and generators fill it, Bvh and GpuScene read it. Units: metres, radians, radiance W/(sr m^2) per channel (linear Rec. 709 primaries).
 
 #include <array>
 #include <cstdint>
@@ -113,12 +113,9 @@ struct Environment {
     std::vector<glm::vec3> radiance; // width * height
 };
 
-struct Scene {
-    std::string name;
-    glm::dvec3 origin = {0, 0, 0}; // world position of (0,0,0) below: the box's centre, subtracted in float64
-
-    // Vertices. positions and normals are always there; the rest is empty when no mesh has it, else as long as
-    // positions.
+// Vertices and the triangles between them. positions and normals are always there; the rest is empty when no vertex has
+// it, else as long as positions.
+struct Geometry {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  // unit, shading
     std::vector<glm::vec4> tangents; // unit, w is the handedness
@@ -126,6 +123,19 @@ struct Scene {
     std::vector<glm::vec2> uv1;
     std::vector<glm::vec4> colors; // linear, multiplies baseColor
     std::vector<Triangle> triangles;
+};
+
+// Where one of Scene::meshes stands. The transform is not singular (engine/scene/instances.h: suitsInstance()).
+struct Instance {
+    uint32_t mesh = 0;
+    glm::dmat4 worldFromMesh = glm::dmat4(1); // world relative to Scene::origin
+};
+
+struct Scene : Geometry { // in the world
+    std::string name;
+    glm::dvec3 origin = {0, 0, 0};   // world position of (0,0,0): the box's centre, subtracted in float64
+    std::vector<Geometry> meshes;    // stored once, around the origins of spaces of their own; none emits
+    std::vector<Instance> instances; // of them
 
     std::vector<Material> materials; // at least one when there are triangles
     std::vector<Image> images;
@@ -136,5 +146,8 @@ struct Scene {
     std::vector<std::string> warnings;        // sentences for the person, in order
     std::vector<std::filesystem::path> files; // that belong to it beside its own: buffers and textures
 };
+
+// Those that a triangle has, of the world or of a mesh that is stored once.
+std::vector<bool> usedMaterials(const Scene& scene);
 
 } // namespace scene

@@ -2,32 +2,21 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/scene/attribute_tables.h"
 #include "engine/scene/light_tables.h"
 #include "engine/scene/material_tables.h"
 #include "engine/scene/motion.h"
+#include "shaders/shared/bvh.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
-
-#include <glm/gtc/packing.hpp>
 
 namespace scene
 {
 
 namespace
 {
-
-uint32_t bits(float value)
-{
-    return std::bit_cast<uint32_t>(value);
-}
-
-glm::uvec4 row(const glm::vec3& v, uint32_t w)
-{
-    return {bits(v.x), bits(v.y), bits(v.z), w};
-}
 
 // 2^-round(log2(size)): brings `size` near 1 without rounding anything.
 double powerOfTwoScale(double size)
@@ -37,35 +26,13 @@ double powerOfTwoScale(double size)
 
 double radiusOf(const Scene& scene)
 {
-    double squared = 0;
+    double squared = squaredRadiusOfInstances(scene);
     for (const Triangle& triangle : scene.triangles)
         for (const uint32_t vertex : triangle.vertices) {
             const glm::dvec3 p(scene.positions[vertex]);
             squared = std::max(squared, glm::dot(p, p));
         }
     return std::sqrt(squared);
-}
-
-// 16 bits a coordinate; shaders/lib/basis.glsl decodes.
-uint32_t octahedralEncode(glm::vec3 v)
-{
-    v /= std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-    glm::vec2 e(v.x, v.y);
-    if (v.z < 0) {
-        e.x = (1 - std::abs(v.y)) * (v.x >= 0 ? 1.0f : -1.0f);
-        e.y = (1 - std::abs(v.x)) * (v.y >= 0 ? 1.0f : -1.0f);
-    }
-    return glm::packSnorm2x16(e);
-}
-
-uint32_t encodeTangent(const glm::vec4& tangent)
-{
-    return (octahedralEncode(glm::vec3(tangent)) & ~1u) | (tangent.w < 0 ? 1u : 0u);
-}
-
-glm::uvec2 encodeColor(const glm::vec4& color)
-{
-    return {glm::packHalf2x16({color.x, color.y}), glm::packHalf2x16({color.z, color.w})};
 }
 
 SceneFeatures everything()
@@ -84,53 +51,6 @@ uint32_t attributeRows(const SceneFeatures& features)
                           features.HAS_NORMAL_MAP || features.HAS_EMISSIVE_TEXTURE ||
                           features.HAS_TRANSMISSION_TEXTURE || features.HAS_SPECULAR_TEXTURE;
     return textured ? shared::ATTRIBUTE_ROWS_UV : shared::ATTRIBUTE_ROWS_BARE;
-}
-
-// The least barycentric weight of points that keep clear of the triangle's edges: by several times what rounding moves
-// the point, and rays that leave it (shaders/lib/offset.glsl).
-float clearance(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
-{
-    const double part = 1.0 / 524288; // 2^-19 of the coordinates
-    const glm::dvec3 sizes = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
-    const double size = std::max({sizes.x, sizes.y, sizes.z});
-    const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-    const double weight = part * size * longest / glm::length(glm::cross(b - a, c - a)); // over the smallest height
-    return weight < 1.0 / 3 ? static_cast<float>(weight) : 1.0f / 3;                     // also where it has no height
-}
-
-template <class T>
-T attributeOr(const std::vector<T>& values, uint32_t vertex, const T& missing)
-{
-    return values.empty() ? missing : values[vertex];
-}
-
-// The record of a triangle, `rows` long.
-void packAttributes(const Scene& scene, const std::vector<glm::vec3>& positions, uint32_t light, uint32_t rows,
-                    size_t index, std::vector<glm::uvec4>& table)
-{
-    const Triangle& triangle = scene.triangles[index];
-    const auto& [a, b, c] = triangle.vertices;
-    glm::uvec4* record = &table[index * rows];
-    glm::uvec3 tangents;
-    for (int i = 0; i < 3; ++i)
-        tangents[i] = encodeTangent(attributeOr(scene.tangents, triangle.vertices[size_t(i)], glm::vec4(1, 0, 0, 1)));
-    record[0] = row(positions[a], triangle.material);
-    record[1] = row(positions[b], light);
-    record[2] = row(positions[c], bits(clearance(positions[a], positions[b], positions[c])));
-    record[3] = {octahedralEncode(scene.normals[a]), octahedralEncode(scene.normals[b]),
-                 octahedralEncode(scene.normals[c]), tangents.z};
-    if (rows == shared::ATTRIBUTE_ROWS_BARE) return;
-    const auto uv = [&](const std::vector<glm::vec2>& set, uint32_t vertex) {
-        const glm::vec2 value = attributeOr(set, vertex, glm::vec2(0));
-        return glm::uvec2(bits(value.x), bits(value.y));
-    };
-    record[4] = {uv(scene.uv0, a), uv(scene.uv0, b)};
-    record[5] = {uv(scene.uv0, c), glm::uvec2(tangents)};
-    if (rows == shared::ATTRIBUTE_ROWS_UV) return;
-    const auto color = [&](uint32_t vertex) { return encodeColor(attributeOr(scene.colors, vertex, glm::vec4(1))); };
-    record[6] = {uv(scene.uv1, a), uv(scene.uv1, b)};
-    record[7] = {uv(scene.uv1, c), color(a)};
-    record[8] = {color(b), color(c)};
 }
 
 void requireFits(const char* what, uint64_t rows, uint64_t maxTableBytes)
@@ -162,9 +82,10 @@ std::vector<uint8_t> alphaTests(const Scene& scene, const SceneFeatures& feature
     return tests;
 }
 
-SceneFeatures featuresOf(SceneFeatures features, const LightTables& lights, FeatureSet featureSet)
+SceneFeatures featuresOf(SceneFeatures features, const Scene& scene, const LightTables& lights, FeatureSet featureSet)
 {
     if (featureSet == FeatureSet::Everything) return everything();
+    features.HAS_INSTANCES = !scene.instances.empty();
     features.HAS_EMISSIVE = !lights.emitters.empty();
     features.HAS_PUNCTUAL = lights.counts.points + lights.counts.spots > 0;
     features.HAS_DIRECTIONAL = lights.counts.directionals > 0;
@@ -187,12 +108,15 @@ void fillSceneData(SceneTables& tables, const LightTables& lights, const std::ve
     uniform.materialOffset = append(materials);
     uniform.lightOffset = append(lights.lights);
     uniform.punctualOffset = append(lights.punctual);
+    uniform.instanceOffset = append(tables.places.rows);
+    uniform.flatTriangles = tables.places.flatTriangles;
+    uniform.triangleBits = tables.meshes.triangleBits;
     uniform.lightCount = lights.shine ? uint32_t(lights.lights.size()) : 0;
     uniform.environmentPick = lights.environmentPick;
     uniform.radius = float(radius * tables.lengthScale);
 }
 
-// All but the tree. With `moves`, triangles are there twice on the device.
+// All but the tree of what lies in the world. With `moves`, triangles are there twice on the device.
 SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions, double lengthScale, double radius,
                      const LightTables& lights, MaterialTables materials, bool moves, uint64_t maxTableBytes,
                      FeatureSet featureSet)
@@ -200,7 +124,7 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
     SceneTables tables;
     tables.lengthScale = lengthScale;
     tables.radianceScale = lights.radianceScale;
-    tables.features = featuresOf(materials.features, lights, featureSet);
+    tables.features = featuresOf(materials.features, scene, lights, featureSet);
     tables.texels = std::move(materials.texels);
     const bool black =
         tables.features.HAS_ENVIRONMENT && lights.environment.empty(); // asked for, but the scene has none
@@ -217,12 +141,43 @@ SceneTables tablesOf(const Scene& scene, const std::vector<glm::vec3>& positions
     requireFits("triangles", (moves ? 2 : 1) * scene.triangles.size() * rows, maxTableBytes);
     tables.attributes.resize(scene.triangles.size() * rows);
     for (size_t t = 0; t < scene.triangles.size(); ++t)
-        packAttributes(scene, positions, lights.lightOfTriangle[t], rows, t, tables.attributes);
+        packAttributes(scene, positions, lights.lightOfTriangle[t], t,
+                       std::span(tables.attributes).subspan(t * rows, rows));
+    if (tables.features.HAS_INSTANCES) {
+        tables.meshes = makeMeshTables(scene, rows, maxTableBytes);
+        tables.places = placeInstances(scene, tables.meshes, lengthScale);
+    }
     fillSceneData(tables, lights, materials.rows, radius);
     return tables;
 }
 
+// All tables together.
+void requireRoom(const TableSizes& sizes, uint64_t environmentRows, uint32_t worlds, uint64_t maxTableBytes)
+{
+    const uint64_t nodes = worlds * (uint64_t{sizes.nodes} + sizes.placeNodes) + sizes.meshNodes;
+    requireFits("materials, lights and instances", environmentRows + worlds * uint64_t{sizes.sceneData}, maxTableBytes);
+    requireFits("trees", nodes, std::min(maxTableBytes, uint64_t{shared::BVH_MAX_NODES} * shared::BVH_NODE_STRIDE *
+                                                            sizeof(glm::uvec4)));
+    requireFits("triangles and instances",
+                worlds * (uint64_t{sizes.triangles} + sizes.placeRecords) + sizes.meshRecords, maxTableBytes);
+    requireFits("triangles", worlds * uint64_t{sizes.attributes} + sizes.meshAttributes, maxTableBytes);
+}
+
 } // namespace
+
+TableSizes sizesOf(const SceneTables& tables)
+{
+    return {.nodes = uint32_t(tables.bvh.nodes.size()),
+            .triangles = uint32_t(tables.bvh.triangles.size()),
+            .attributes = uint32_t(tables.attributes.size()),
+            .sceneData = uint32_t(tables.sceneData.size()),
+            .placeNodes = uint32_t(tables.places.nodes.size()),
+            .placeRecords = uint32_t(tables.places.records.size()),
+            .depth = std::max(tables.bvh.stats.depth, tables.meshes.stats.depth),
+            .meshNodes = uint32_t(tables.meshes.nodes.size()),
+            .meshRecords = uint32_t(tables.meshes.triangles.size()),
+            .meshAttributes = uint32_t(tables.meshes.attributes.size())};
+}
 
 SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const std::function<void(double)>& bvhProgress,
                             FeatureSet featureSet)
@@ -233,12 +188,12 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes, const st
     const LightTables lights = makeLightTables(scene, positions, lengthScale, radius * lengthScale);
     SceneTables tables = tablesOf(scene, positions, lengthScale, radius, lights,
                                   makeMaterialTables(scene, lights.radianceScale), false, maxTableBytes, featureSet);
-    requireFits("materials and lights", tables.environment.size() + tables.sceneData.size(), maxTableBytes);
     tables.bvh = buildBvh({.positions = positions,
                            .triangles = scene.triangles,
                            .needsAlphaTest = alphaTests(scene, tables.features),
                            .progress = bvhProgress},
                           maxTableBytes);
+    requireRoom(sizesOf(tables), tables.environment.size(), 1, maxTableBytes);
     return tables;
 }
 
@@ -289,7 +244,7 @@ void MovingTables::Kept::findWhatMoves(const Scene& scene)
 
 double MovingTables::Kept::radiusOf(const Scene& scene) const
 {
-    double squared = stillSquaredRadius;
+    double squared = std::max(stillSquaredRadius, squaredRadiusOfInstances(scene));
     for (const uint32_t t : movingTriangles) {
         for (const uint32_t v : scene.triangles[t].vertices) {
             const glm::dvec3 p(scene.positions[v]);
@@ -325,13 +280,15 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
 
     const MovingBvh::Most& tree = kept.bvh->most();
     const size_t lights = kept.lights.emitters.size() + rest.lights.size() + 1;
-    kept.most = {.nodes = tree.nodeRows,
-                 .triangles = tree.recordRows,
-                 .attributes = uint32_t(kept.tables.attributes.size()),
-                 .sceneData = uint32_t(kept.materials.size() + kept.lights.punctual.size() + lights),
-                 .depth = tree.depth};
-    requireFits("materials and lights", kept.tables.environment.size() + 2 * uint64_t{kept.most.sceneData},
-                maxTableBytes);
+    const SceneTables& made = kept.tables;
+    kept.most = sizesOf(made);
+    kept.most.nodes = tree.nodeRows;
+    kept.most.triangles = tree.recordRows;
+    kept.most.sceneData =
+        uint32_t(kept.materials.size() + kept.lights.punctual.size() + lights + made.places.rows.size());
+    kept.most.placeNodes = roomForNodesOver(rest.instances.size());
+    kept.most.depth = std::max(tree.depth, made.meshes.stats.depth);
+    requireRoom(kept.most, made.environment.size(), 2, maxTableBytes);
     kept.changes.attributes = rangesOf(kept.movingTriangles, kept.tables.uniform.attributeRows);
     kept.changes.tree = kept.bvh->changes();
 }
@@ -340,9 +297,11 @@ MovingTables::MovingTables(const MovingTables& other) : kept_(std::make_unique<K
 
 MovingTables::~MovingTables() = default;
 
-void MovingTables::forgetTexels()
+void MovingTables::forgetShared()
 {
     kept_->tables.texels = {};
+    MeshTables& meshes = kept_->tables.meshes;
+    meshes.nodes = meshes.triangles = meshes.attributes = {};
 }
 
 const SceneTables& MovingTables::at(const Scene& posed)
@@ -351,10 +310,16 @@ const SceneTables& MovingTables::at(const Scene& posed)
     SceneTables& tables = kept.tables;
     const uint32_t rows = tables.uniform.attributeRows;
     CHECK_EQ(posed.triangles.size() * rows, tables.attributes.size());
+    PlaceTables places;
+    if (tables.features.HAS_INSTANCES) places = placeInstances(posed, tables.meshes, tables.lengthScale);
+    if (places.nodes.size() > kept.most.placeNodes)
+        throw Error("A pose of the scene needs a larger tree over its instances than it has room for.");
     const double radius = kept.radiusOf(posed);
     for (const uint32_t v : kept.movingVertices) kept.positions[v] = scaled(posed.positions[v], tables.lengthScale);
     for (const uint32_t t : kept.movingTriangles)
-        packAttributes(posed, kept.positions, kept.lights.lightOfTriangle[t], rows, t, tables.attributes);
+        packAttributes(posed, kept.positions, kept.lights.lightOfTriangle[t], t,
+                       std::span(tables.attributes).subspan(size_t{t} * rows, rows));
+    tables.places = std::move(places);
     const LightTables lights =
         makeLightTables(posed, kept.positions, tables.lengthScale, radius * tables.lengthScale, kept.lights);
     fillSceneData(tables, lights, repaint(kept.materials, posed, tables.radianceScale), radius);

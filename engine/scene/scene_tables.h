@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/scene/bvh.h"
+#include "engine/scene/instances.h"
 #include "engine/scene/scene.h"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/variant.h"
@@ -39,7 +40,9 @@ struct LightCounts {
 };
 
 struct SceneTables {
-    Bvh bvh;
+    Bvh bvh;            // of what lies in the world
+    MeshTables meshes;  // with a scene that has instances
+    PlaceTables places; // likewise
     std::vector<glm::uvec4> attributes;
     std::vector<glm::uvec4> texels;
     std::vector<glm::uvec4> environment; // of table SceneData the first rows: the environment's
@@ -56,13 +59,17 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes,
                             const std::function<void(double)>& bvhProgress = {},
                             FeatureSet featureSet = FeatureSet::Needed);
 
-// Rows that a pose's tables have at most, and the depth of its tree.
+// Rows that a pose's tables have at most.
 struct TableSizes {
     uint32_t nodes = 0, triangles = 0, attributes = 0, sceneData = 0;
-    uint32_t depth = 0;
+    uint32_t placeNodes = 0, placeRecords = 0;
+    uint32_t depth = 0;                                       // of any tree but that over instances
+    uint32_t meshNodes = 0, meshRecords = 0, meshAttributes = 0; // which all poses share
 };
 
-// While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData.
+TableSizes sizesOf(const SceneTables& tables);
+
+// While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData and places.
 struct TableChanges {
     MovingBvh::Changes tree;
     std::vector<RowRange> attributes;
@@ -80,10 +87,10 @@ class MovingTables
     MovingTables& operator=(const MovingTables&) = delete;
     ~MovingTables();
 
-    // Of what pose() has made of the scene; until the next call. Texels and environment are those of rest in all poses.
+    // Of what pose() has made of the scene; until the next call. Texels, environment and meshes are those of rest in all poses.
     const SceneTables& at(const Scene& posed);
     const SceneTables& last() const; // of the last pose; first, of rest
-    void forgetTexels();             // once they are on the device
+    void forgetShared();             // texels and meshes: once they are on the device
     const TableChanges& changes() const;
     const TableSizes& most() const;
 

@@ -16,6 +16,7 @@ layout(set = SET_SCENE, binding = 5, std140) uniform Scene { SceneUniform worlds
 uint world = frame.world;
 #define scene worlds[TWO_WORLDS ? world : 0u]
 #define TREE_ROOT (TWO_WORLDS ? scene.rootNode : 0u)
+#define INSTANCE_ROOT scene.instanceRoot
 #define TREE_RADIUS (TWO_WORLDS ? scene.radius : 0.0) // boxes of a tree that is refitted depend on the poses before
 
 // Between frames that show the same world, that is the one before, too.

@@ -1,9 +1,10 @@
 // Rays against the scene: closestHit, occluded. The tables' layout and the tree's source: shared/bvh.h.
 //
-// The includer declares the tables Nodes and Triangles, the constants bool HAS_ALPHA, uint STACK_SIZE (at least the tree's
-// depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed), asked of
-// flagged triangles only; and TREE_ROOT, if the root is not node 0; and TREE_RADIUS where the tree is not a matter of where
-// the triangles are alone: then a sphere about the origin says how large the scene is, or the root does where that is 0.
+// The includer declares the tables Nodes and Triangles, the constants bool HAS_ALPHA, bool HAS_INSTANCES, uint STACK_SIZE (at
+// least the trees' depth) and bool STACK_IN_REGISTERS, and bool alphaPasses(uint triangle, vec2 barycentric, uint alphaSeed),
+// asked of flagged triangles only; TREE_ROOT, if the root is not node 0; INSTANCE_ROOT, that of the tree over instances, if
+// there are any; and TREE_RADIUS where the tree is not a matter of where the triangles are alone: then a sphere about the
+// origin says how large the scene is, or the root does where that is 0.
 //
 // Written for drivers that run 8 lanes under masks (lib/lanes.glsl): hence planes picked by the ray's signs, and a stack in
 // registers. Mesa's CPU driver stores to an indexed array lane by lane, each behind a branch that is mispredicted when
@@ -18,6 +19,9 @@
 
 #ifndef TREE_ROOT
 #define TREE_ROOT 0u
+#endif
+#ifndef INSTANCE_ROOT
+#define INSTANCE_ROOT 0u
 #endif
 #ifndef TREE_RADIUS
 #define TREE_RADIUS 0.0
@@ -50,12 +54,12 @@ struct TraversalRay {
     uint signs; // bit a: component a of the direction is negative
 };
 
-// Distance to go before the scene, at most two of its radii away, can begin: keeps coordinates relative to the origin,
-// and their rounding, of the scene's size however far the origin is.
-float distanceToScene(vec3 origin, vec3 direction)
+// Distance to go before what the tree holds, at most two of its radii away, can begin: keeps coordinates relative to the
+// origin, and their rounding, of its size however far the origin is. `radius`: of it, about the origin; 0: as the root says.
+float distanceToTree(vec3 origin, vec3 direction, uint root, float radius)
 {
-    if (TREE_RADIUS > 0.0) return max(-dot(origin, direction) - 2.0 * TREE_RADIUS, 0.0);
-    uvec4 frame = FETCH(Nodes, BVH_NODE_STRIDE * TREE_ROOT);
+    if (radius > 0.0) return max(-dot(origin, direction) - 2.0 * radius, 0.0);
+    uvec4 frame = FETCH(Nodes, BVH_NODE_STRIDE * root);
     uvec3 exponents = (uvec3(frame.w) >> uvec3(0u, 8u, 16u)) & 255u;
     vec3 halfExtent = 127.5 * uintBitsToFloat(exponents << 23);
     vec3 center = uintBitsToFloat(frame.xyz) + halfExtent;
@@ -68,10 +72,10 @@ float finiteInverse(float x)
     return 1.0 / (abs(x) < SMALLEST ? (x < 0.0 ? -SMALLEST : SMALLEST) : x);
 }
 
-TraversalRay prepare(Ray ray)
+TraversalRay prepare(Ray ray, uint root, float radius)
 {
     TraversalRay r;
-    r.advance = distanceToScene(ray.origin, ray.direction);
+    r.advance = distanceToTree(ray.origin, ray.direction, root, radius);
     r.origin = ray.origin + r.advance * ray.direction;
     r.direction = ray.direction;
     r.inverse = vec3(finiteInverse(ray.direction.x), finiteInverse(ray.direction.y), finiteInverse(ray.direction.z));
@@ -178,7 +182,8 @@ TriangleMeeting meetTriangle(TraversalRay r, vec3 weights, vec3 toCorner0, vec3 
 // Watertight in the sense of Woop, Benthin and Wald, 2013: a vertex's image in the ray's frame depends on nothing else,
 // and two triangles see their common edge with exactly opposite values (so no contraction to fused operations). u and v
 // are convex whatever the rounding; t comes from the plane, which is exact for walls along the axes.
-bool meetsRecord(TraversalRay r, uvec4 row0, uvec4 row1, uvec4 row2, uvec4 row3, bool any, Hit nearest, out Hit met)
+bool meetsRecord(TraversalRay r, uint firstTriangle, uvec4 row0, uvec4 row1, uvec4 row2, uvec4 row3, bool any, Hit nearest,
+                 out Hit met)
 {
     vec3 corner0 = uintBitsToFloat(row0.xyz);
     vec3 corner1 = uintBitsToFloat(row1.xyz);
@@ -197,8 +202,8 @@ bool meetsRecord(TraversalRay r, uvec4 row0, uvec4 row1, uvec4 row2, uvec4 row3,
     vec3 secondWeights = vec3(-edge, cross2(p3, p1), cross2(p2, p3));
     TriangleMeeting first = meetTriangle(r, firstWeights, to0, corner0, corner1, corner2);
     TriangleMeeting second = meetTriangle(r, secondWeights, to3, corner3, corner2, corner1);
-    uint index0 = row0.w & ~BVH_ALPHA_FLAG;
-    uint index1 = row1.w;
+    uint index0 = firstTriangle + (row0.w & ~BVH_ALPHA_FLAG);
+    uint index1 = firstTriangle + row1.w;
     bool meetsFirst = first.met && first.t > 0.0 &&
                       (first.t < nearest.t || (!any && first.t == nearest.t && index0 < nearest.triangle));
     bool meetsSecond = second.met && second.t > 0.0 &&
@@ -222,17 +227,18 @@ const uint NODES_BEFORE_TRIANGLES = 4u;
 // that order; above them what the slot adds to; 0: none. Visits nodes until there are triangles, then tests them all, so that
 // lanes in lockstep test theirs together. A triangle whose alpha must be asked interrupts that, and the search goes on where it
 // was: whatever stands inside a loop is paid at each of its rounds, asked or not.
-Hit traverse(Ray ray, uint alphaSeed, bool any)
+//
+// The tree's triangles count from `firstTriangle`; `tMax` and the hit's t from the origin that the ray had before it advanced.
+Hit search(TraversalRay r, float tMax, uint root, uint firstTriangle, uint alphaSeed, bool any)
 {
     uint stack[STACK_SIZE]; // of groups: in registers with the top at 0, else at depth - 1
     uint depth = 0u;
     if (STACK_IN_REGISTERS)
         for (uint i = 0u; i < STACK_SIZE; ++i) stack[i] = 0u;
 
-    TraversalRay r = prepare(ray);
-    Hit hit = Hit(NO_HIT, vec2(0.0), ray.tMax - r.advance);
+    Hit hit = Hit(NO_HIT, vec2(0.0), tMax - r.advance);
     uint order = any ? r.signs ^ 7u : r.signs;
-    uint group = (TREE_ROOT << 8) | (1u << order); // slot 0 of the base that is the root
+    uint group = (root << 8) | (1u << order); // slot 0 of the base that is the root
     bool blocked = false;
     bool more = true;
     // Of the node whose triangles are to be tested.
@@ -296,7 +302,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
                 records &= records - 1u;
                 uvec4 row0 = FETCH(Triangles, record);
                 Hit found;
-                bool met = meetsRecord(r, row0, FETCH(Triangles, record + 1u), FETCH(Triangles, record + 2u),
+                bool met = meetsRecord(r, firstTriangle, row0, FETCH(Triangles, record + 1u), FETCH(Triangles, record + 2u),
                                        FETCH(Triangles, record + 3u), any, hit, found) && valid;
                 if (HAS_ALPHA) {
                     bool isFlagged = met && (row0.w & BVH_ALPHA_FLAG) != 0u;
@@ -330,6 +336,105 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
     if (blocked) hit.triangle = 0u;
     hit.t = max(hit.t + r.advance, 0.0);
     return hit;
+}
+
+// ------------------------------------------------------------------------------------------------------------- two levels
+// A walk through the tree over instances, which stops at each that the ray may meet. Its rest waits here, not in registers:
+// it is asked once an instance.
+uint instanceStack[BVH_STACK_SIZE];
+
+struct InstanceWalk {
+    uint group; // as search() has it
+    uint depth;
+    uint masks;
+    uint firstRecord;
+    uint records;
+};
+
+// To the next instance whose box the ray meets before tMax. False: there is none.
+bool advance(inout InstanceWalk walk, TraversalRay r, float tMax, uint order)
+{
+    LOOP_BEGIN(walk.records == 0u && (walk.group & 255u) != 0u)
+        bool walks = walk.records == 0u && (walk.group & 255u) != 0u;
+        uint slot = uint(findLSB(walk.group)) ^ order;
+        uint node = walks ? BVH_NODE_STRIDE * ((walk.group >> 8) + slot) : 0u;
+        uint rest = walk.group & (walk.group - 1u);
+        uvec4 links = FETCH(Nodes, node + 1u);
+        uint hits = meetChildren(r, tMax - r.advance, FETCH(Nodes, node), links.x, FETCH(Nodes, node + 2u),
+                                 FETCH(Nodes, node + 3u), FETCH(Nodes, node + 4u));
+        walk.masks = walks ? links.x : walk.masks;
+        walk.firstRecord = walks ? links.z : walk.firstRecord;
+        walk.records = walks ? hits & 0xffffffu : walk.records;
+        uint children = links.y | inOrder(hits >> 24, order);
+        bool enters = (children & 255u) != 0u;
+        bool remains = (rest & 255u) != 0u;
+        instanceStack[walk.depth] = rest;
+        walk.depth += walks && enters && remains ? 1u : 0u;
+        bool pops = walks && !enters && !remains && walk.depth != 0u;
+        walk.depth -= pops ? 1u : 0u;
+        uint top = instanceStack[walk.depth];
+        uint next = enters ? children : remains ? rest : pops ? top : 0u;
+        walk.group = walks ? next : walk.group;
+    LOOP_END(walk.records == 0u && (walk.group & 255u) != 0u)
+    return walk.records != 0u;
+}
+
+// First what lies in the world, then instance by instance, roughly front to back. The ray goes into a mesh's space from where
+// it has advanced in the world, so that the rounding of coordinates there is of the world's size, too.
+Hit traverse(Ray ray, uint alphaSeed, bool any)
+{
+    Hit nearest = Hit(NO_HIT, vec2(0.0), ray.tMax);
+    TraversalRay r = prepare(ray, TREE_ROOT, TREE_RADIUS);
+    float tMax = ray.tMax;
+    uint root = TREE_ROOT;
+    uint firstTriangle = 0u;
+    float scale = 1.0;  // of lengths along r, over those along `ray`
+    float before = 0.0; // of `ray`, where r begins
+
+    TraversalRay outside = r;
+    InstanceWalk walk = InstanceWalk(0u, 0u, 0u, 0u, 0u);
+    uint order = 0u;
+    if (HAS_INSTANCES) {
+        outside = prepare(ray, INSTANCE_ROOT, TREE_RADIUS);
+        order = any ? outside.signs ^ 7u : outside.signs;
+        walk.group = (INSTANCE_ROOT << 8) | (1u << order);
+    }
+    bool more = true;
+    LOOP_BEGIN(more)
+        Hit found = search(r, tMax, root, firstTriangle, alphaSeed, any);
+        if (!HAS_INSTANCES) {
+            nearest = found;
+            more = false;
+        } else {
+            float t = before + found.t / scale;
+            bool nearer = more && found.triangle != NO_HIT &&
+                          (any || t < nearest.t || (t == nearest.t && found.triangle < nearest.triangle));
+            nearest.triangle = nearer ? found.triangle : nearest.triangle;
+            nearest.barycentric = nearer ? found.barycentric : nearest.barycentric;
+            nearest.t = nearer ? t : nearest.t;
+            more = more && !(any && nearer);
+            if (!more) walk.group = walk.records = 0u;
+            more = advance(walk, outside, nearest.t, order) && more;
+            uint earlier = walk.masks & ((walk.records & (0u - walk.records)) - 1u);
+            uint record = more ? BVH_RECORD_STRIDE * (walk.firstRecord + uint(bitCount(earlier))) : 0u;
+            walk.records &= walk.records - 1u;
+            vec4 x = uintBitsToFloat(FETCH(Triangles, record));
+            vec4 y = uintBitsToFloat(FETCH(Triangles, record + 1u));
+            vec4 z = uintBitsToFloat(FETCH(Triangles, record + 2u));
+            uvec4 mesh = FETCH(Triangles, record + 3u);
+            vec3 from = outside.origin - vec3(x.w, y.w, z.w);
+            vec3 origin = vec3(dot(x.xyz, from), dot(y.xyz, from), dot(z.xyz, from));
+            vec3 direction = vec3(dot(x.xyz, outside.direction), dot(y.xyz, outside.direction), dot(z.xyz, outside.direction));
+            float inside = length(direction);
+            scale = more ? inside : scale;
+            before = more ? outside.advance : before;
+            tMax = more ? (nearest.t - outside.advance) * inside : tMax;
+            root = more ? mesh.x : root;
+            firstTriangle = more ? mesh.y : firstTriangle;
+            if (more) r = prepare(Ray(origin, direction / inside, 0.0), root, 0.0);
+        }
+    LOOP_END(HAS_INSTANCES && more)
+    return nearest;
 }
 
 // The nearest triangle before tMax; of several at the same t the one of the lowest index.

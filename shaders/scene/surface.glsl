@@ -25,9 +25,69 @@ struct TriangleGeometry {
     uint light;      // index, or NO_INDEX
     vec3 areaNormal; // cross product of the edges: length is twice the area, direction is the front
     float clearance; // least barycentric weight of a point that paths scatter at
+    vec3 size;       // the largest that coordinates are, by axis
 };
 
-uint attributeRow(uint triangle) { return (TWO_WORLDS ? scene.attributeOffset : 0u) + triangle * scene.attributeRows; }
+// Where a triangle lies of a mesh that is stored once.
+struct Place {
+    mat3 linear; // from mesh to world
+    vec3 origin; // of the mesh, in the world
+    vec3 size;   // as TriangleGeometry has it, of all of the mesh
+    float side;  // -1: it mirrors
+};
+
+bool isPlaced(uint triangle) { return HAS_INSTANCES && triangle >= scene.flatTriangles; }
+
+uint instanceRow(uint triangle)
+{
+    return scene.instanceOffset + INSTANCE_ROWS * ((triangle - scene.flatTriangles) >> scene.triangleBits);
+}
+
+Place loadPlace(uint triangle)
+{
+    uint row = instanceRow(triangle);
+    vec4 x = uintBitsToFloat(FETCH(SceneData, row));
+    vec4 y = uintBitsToFloat(FETCH(SceneData, row + 1u));
+    vec4 z = uintBitsToFloat(FETCH(SceneData, row + 2u));
+    uvec4 last = FETCH(SceneData, row + 3u);
+    Place place;
+    place.linear = transpose(mat3(x.xyz, y.xyz, z.xyz));
+    place.origin = vec3(x.w, y.w, z.w);
+    place.size = uintBitsToFloat(last.yzw);
+    place.side = (last.x & INSTANCE_MIRRORS) != 0u ? -1.0 : 1.0;
+    return place;
+}
+
+// The same for equal points, whichever triangle has them.
+vec3 inWorld(Place place, vec3 point)
+{
+    precise vec3 p = place.linear[0] * point.x + place.linear[1] * point.y + place.linear[2] * point.z + place.origin;
+    return p;
+}
+
+vec3 normalInWorld(Place place, vec3 normal)
+{
+    mat3 m = place.linear;
+    mat3 cofactors = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    return normalize(place.side * (cofactors * normal));
+}
+
+uint attributeRow(uint triangle)
+{
+    uint row = (TWO_WORLDS ? scene.attributeOffset : 0u) + triangle * scene.attributeRows;
+    if (!isPlaced(triangle)) return row;
+    uint first = FETCH(SceneData, instanceRow(triangle) + 3u).x & ~INSTANCE_MIRRORS;
+    return first + ((triangle - scene.flatTriangles) & ((1u << scene.triangleBits) - 1u)) * scene.attributeRows;
+}
+
+// As scene::packAttributes() has it, for triangles that are not in the world when it packs them.
+float clearanceOf(TriangleGeometry g)
+{
+    const float PART = 1.9073486328125e-6; // 2^-19
+    float longest = max(max(distance(g.p0, g.p1), distance(g.p1, g.p2)), distance(g.p2, g.p0));
+    float weight = PART * maxComponent(g.size) * longest / length(g.areaNormal);
+    return weight < 1.0 / 3.0 ? weight : 1.0 / 3.0;
+}
 
 TriangleGeometry loadTriangle(uint triangle)
 {
@@ -42,8 +102,20 @@ TriangleGeometry loadTriangle(uint triangle)
     g.material = a.w;
     g.light = b.w;
     g.clearance = uintBitsToFloat(c.w);
-    precise vec3 n = cross(g.p1 - g.p0, g.p2 - g.p0);
+    if (!isPlaced(triangle)) {
+        precise vec3 n = cross(g.p1 - g.p0, g.p2 - g.p0);
+        g.areaNormal = n;
+        g.size = max(abs(g.p0), max(abs(g.p1), abs(g.p2)));
+        return g;
+    }
+    Place place = loadPlace(triangle);
+    g.p0 = inWorld(place, g.p0);
+    g.p1 = inWorld(place, g.p1);
+    g.p2 = inWorld(place, g.p2);
+    precise vec3 n = place.side * cross(g.p1 - g.p0, g.p2 - g.p0);
     g.areaNormal = n;
+    g.size = place.size;
+    g.clearance = clearanceOf(g);
     return g;
 }
 
@@ -66,16 +138,14 @@ vec3 pointOn(TriangleGeometry g, vec2 barycentric)
 
 vec3 hitPosition(uint triangle, vec2 barycentric) { return pointOn(loadTriangle(triangle), barycentric); }
 
-vec3 sizeOf(TriangleGeometry g) { return max(abs(g.p0), max(abs(g.p1), abs(g.p2))); } // by axis
-
-float largestCoordinate(TriangleGeometry g) { return maxComponent(sizeOf(g)); }
+float largestCoordinate(TriangleGeometry g) { return maxComponent(g.size); }
 
 // How far from its plane rays begin that leave the triangle there. Near its edges they must pass clear of what lies beyond,
 // too, which is known as exactly as the largest coordinate.
 float offsetOf(TriangleGeometry g, vec2 barycentric)
 {
     bool nearEdge = leastWeight(barycentric) < 2.0 * g.clearance;
-    return nearEdge ? originOffset(vec3(1.0, 0.0, 0.0), vec3(largestCoordinate(g))) : originOffset(normalize(g.areaNormal), sizeOf(g));
+    return nearEdge ? originOffset(vec3(1.0, 0.0, 0.0), vec3(largestCoordinate(g))) : originOffset(normalize(g.areaNormal), g.size);
 }
 
 // ------------------------------------------------------------------------------------------------------ what lies on it
@@ -199,20 +269,30 @@ struct Surface {
     float area; // of the triangle, scaled
 };
 
-vec3 shadingNormal(uint material, uvec4 packed, vec2 barycentric, Coordinates at)
+vec3 shadingNormal(uint triangle, uint material, uvec4 packed, vec2 barycentric, Coordinates at)
 {
-    vec3 normal = normalize(
-        baryMix(octahedralDecode(packed.x), octahedralDecode(packed.y), octahedralDecode(packed.z), barycentric));
+    mat3 normals = mat3(octahedralDecode(packed.x), octahedralDecode(packed.y), octahedralDecode(packed.z));
+    Place place;
+    bool placed = isPlaced(triangle);
+    if (placed) {
+        place = loadPlace(triangle);
+        for (int i = 0; i < 3; ++i) normals[i] = normalInWorld(place, normals[i]);
+    }
+    vec3 normal = normalize(baryMix(normals[0], normals[1], normals[2], barycentric));
     if (!HAS_NORMAL_MAP) return normal;
     uint use = textureRow(material, TEXTURE_NORMAL);
     if (FETCH(SceneData, use).x == NO_INDEX) return normal;
 
     vec3 bent = sampleTexture(use, at.uv0, at.uv1).xyz * 2.0 - 1.0;
     bent.xy *= uintBitsToFloat(FETCH(SceneData, material + 4u).x);
-    vec3 tangent = baryMix(octahedralDecode(at.tangents.x), octahedralDecode(at.tangents.y), octahedralDecode(packed.w), barycentric);
+    mat3 tangents = mat3(octahedralDecode(at.tangents.x), octahedralDecode(at.tangents.y), octahedralDecode(packed.w));
+    if (placed)
+        for (int i = 0; i < 3; ++i) tangents[i] = normalize(place.linear * tangents[i]);
+    vec3 tangent = baryMix(tangents[0], tangents[1], tangents[2], barycentric);
     float length2 = dot(tangent, tangent);
     if (length2 > 0.0) tangent *= inversesqrt(length2); // opposite ones may leave nothing
     float handedness = (at.tangents.x & 1u) != 0u ? -1.0 : 1.0;
+    if (placed) handedness *= place.side;
     vec3 candidate = tangent * bent.x + cross(normal, tangent) * handedness * bent.y + normal * bent.z;
     float squared = dot(candidate, candidate);
     return squared <= 1e-12 ? normal : candidate * inversesqrt(squared); // a map that decodes to nothing bends nothing
@@ -234,7 +314,7 @@ Surface loadSurface(uint triangle, vec2 barycentric, vec3 wo)
     vec3 frontNormal = normalize(g.areaNormal);
     bool front = dot(wo, frontNormal) >= 0.0;
     s.geometricNormal = front ? frontNormal : -frontNormal;
-    vec3 normal = shadingNormal(material, FETCH(Attributes, row + 3u), barycentric, at);
+    vec3 normal = shadingNormal(triangle, material, FETCH(Attributes, row + 3u), barycentric, at);
     if (!front) normal = -normal;
     s.normal = dot(normal, wo) > 0.0 ? normal : s.geometricNormal;
     s.baseColor = loadBaseColor(material, row, barycentric, at).rgb;

@@ -64,6 +64,17 @@ SHARED_CONST uint LIGHT_ENVIRONMENT = 3u;
 SHARED_CONST uint PUNCTUAL_ROWS = 3u;
 // Environment texel: radiance rgb, probability / solid angle. Alias rows, two texels each: threshold, index.
 
+// Instance, a mesh that is stored once in one of its places: rows 0-2: those of the transform from mesh to world, w its
+// translation | 3: x the mesh's first row in table Attributes, with INSTANCE_MIRRORS where it mirrors; yzw: the largest
+// that a coordinate can be on the way to the world.
+// Triangles before SceneUniform::flatTriangles lie in the world. Triangle t of the mesh of instance i is called
+// flatTriangles + (i << triangleBits) + t. Trees, records and attributes of the meshes lie behind those of all worlds.
+// In their records triangles count from 0.
+// The tree over the instances has them for records of table Triangles: rows 0-2: those of the linear transform from
+// world to mesh, w the translation before it | 3: root node of the mesh's tree, the first of its triangles here, 0, 0.
+SHARED_CONST uint INSTANCE_ROWS = 4u;
+SHARED_CONST uint INSTANCE_MIRRORS = 0x80000000u;
+
 struct SceneUniform {
     uint attributeRows;          // rows of table Attributes per triangle
     uint attributeOffset;        // rows
@@ -78,6 +89,10 @@ struct SceneUniform {
     uint environmentHeight;      // texels
     float environmentPick;       // probability that next-event estimation picks the environment
     float radius;                // of the bounding sphere about the origin, scaled
+    uint instanceOffset;         // rows
+    uint instanceRoot;           // of the tree over instances in table Nodes
+    uint flatTriangles;
+    uint triangleBits;
     uint padding0;
     uint padding1;
     uint padding2;
@@ -85,7 +100,7 @@ struct SceneUniform {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(shared::SceneUniform) == 64);
+static_assert(sizeof(shared::SceneUniform) == 80);
 static_assert(shared::MATERIAL_ROWS == shared::MATERIAL_HEAD_ROWS + shared::TEXTURE_COUNT * shared::TEXTURE_ROWS);
 #endif
 #endif

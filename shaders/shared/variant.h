@@ -28,7 +28,8 @@
     X(21, bool, HAS_TRANSMISSION_TEXTURE, true, "transmission textures")                                               \
     X(22, bool, HAS_SPECULAR_TEXTURE, true, "specular weight and color textures")                                      \
     X(23, bool, HAS_MANY_MATERIALS, true, "more than one material")                                                    \
-    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")
+    X(29, bool, HAS_DEEP_TEXTURE, true, "textures of 16 bits a sample")                                                \
+    X(34, bool, HAS_INSTANCES, false, "meshes that are stored once and stand in many places")
 
 #define VARIANT_CONSTANTS(X)                                                                                           \
     X(0, uint, MAX_BOUNCES, 5u, "scattering events on a path")                                                         \

@@ -9,6 +9,7 @@ layout(constant_id = 0) const bool ANY_HIT = false;
 layout(constant_id = 1) const uint STACK_SIZE = 32u;
 layout(constant_id = 2) const bool STACK_IN_REGISTERS = false;
 const bool HAS_ALPHA = false;
+const bool HAS_INSTANCES = false;
 
 TABLE(SET_SCENE, 0, Nodes);
 TABLE(SET_SCENE, 1, Triangles);

@@ -8,6 +8,7 @@
 #include "engine/scene/procedural.h"
 #include "ui/cli/number_range.h"
 
+#include <array>
 #include <cstdio>
 
 namespace ui
@@ -22,6 +23,16 @@ bool isGltf(const std::string& file)
     return extension == ".gltf" || extension == ".glb";
 }
 
+constexpr std::array<std::pair<const char*, scene::Instancing>, 3> INSTANCING = {
+    {{"auto", scene::Instancing::Auto}, {"on", scene::Instancing::On}, {"off", scene::Instancing::Off}}};
+
+std::optional<scene::Instancing> instancingOf(const std::string& word)
+{
+    for (const auto& [name, value] : INSTANCING)
+        if (word == name) return value;
+    return {};
+}
+
 scene::Scene load(const SceneSource& source, bool sky, const LoadProgress& progress)
 {
     std::string names;
@@ -31,9 +42,11 @@ scene::Scene load(const SceneSource& source, bool sky, const LoadProgress& progr
     }
     if (!isGltf(source.name))
         throw Error("There is no scene \"{}\": it is neither a .gltf or .glb file nor one of: {}.", source.name, names);
-    return scene::loadGltf(
-        source.name,
-        {.progress = progress, .sky = sky, .animations = source.animation != "off", .assetRoot = source.assetRoot});
+    return scene::loadGltf(source.name, {.progress = progress,
+                                         .sky = sky,
+                                         .animations = source.animation != "off",
+                                         .instancing = source.instancing,
+                                         .assetRoot = source.assetRoot});
 }
 
 void animate(scene::Scene& scene, const SceneSource& source)
@@ -59,6 +72,9 @@ std::vector<uint32_t> chosenAnimations(const scene::Scene& scene, const SceneSou
 std::vector<std::pair<std::string, std::string>> SceneSource::toText() const
 {
     std::vector<std::pair<std::string, std::string>> text;
+    if (instancing != scene::Instancing::Auto)
+        for (const auto& [word, value] : INSTANCING)
+            if (instancing == value) text.emplace_back("instances", word);
     if (time) text.emplace_back("time", fmt::format("{}", *time));
     if (!animation.empty()) text.emplace_back("animation", animation);
     return text;
@@ -71,6 +87,15 @@ CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::stri
            "The scene's buffers and textures may lie anywhere below this directory, as in \"../textures/x.png\"; "
            "without it, only below the scene's own folder. Others are refused, and links that lead to others.")
         ->option_text("DIR");
+    app.add_option_function<std::string>(
+           "--instances", [&source](const std::string& word) { source.instancing = instancingOf(word).value(); },
+           "Meshes that stand in several places (shared meshes, EXT_mesh_gpu_instancing) are stored once, with a tree "
+           "of their own: where copies would be more than a million triangles (auto), wherever they keep their shape, "
+           "do not emit and rest (on), or never (off). Less memory, slower rays, the same picture but for rounding.")
+        ->option_text("auto|on|off (auto)")
+        ->check([](const std::string& word) {
+            return instancingOf(word) ? std::string() : fmt::format("\"{}\" is none of auto, on and off.", word);
+        });
     app.add_option("--time", source.time,
                    "Shows an animated scene as it is at this time, held still (or as it plays on from there: --fps); "
                    "before the first "

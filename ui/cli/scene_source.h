@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/scene/instances.h"
 #include "engine/scene/scene.h"
 #include "passes/settings.h"
 #include "ui/cli/progress.h"
@@ -21,9 +22,10 @@ struct SceneSource {
     std::string assetRoot;      // below which its files may lie, beside its own folder; empty: nowhere else
     std::optional<double> time; // seconds; none: at rest, or 0 where an animation is named
     std::string animation;      // a name, an index, "all" or "off"; empty: all where a time is given
+    scene::Instancing instancing = scene::Instancing::Auto;
 
     bool atRest() const { return !time && animation.empty(); }
-    // The pose, as metadata, like settings.
+    // All but name and asset root, as metadata, like settings.
     std::vector<std::pair<std::string, std::string>> toText() const;
 
     bool operator==(const SceneSource&) const = default;
@@ -34,7 +36,7 @@ std::vector<uint32_t> chosenAnimations(const scene::Scene& scene, const SceneSou
 
 constexpr const char* SCENE_DOC = "A .gltf or .glb file, or a built-in scene (info --scenes lists them).";
 
-// SCENE, --asset-root, --time and --animation; `source` must live until the options are read. The option that is
+// SCENE, --asset-root, --instances, --time and --animation; `source` must live until the options are read. The option that is
 // returned is SCENE.
 CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::string& doc);
 

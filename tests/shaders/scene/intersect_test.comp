@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const bool HAS_ALPHA = false;
+const bool HAS_INSTANCES = false;
 layout(constant_id = 1) const bool TRACE_OCCLUDED = true;
 layout(constant_id = 2) const uint STACK_SIZE = 32u;
 layout(constant_id = 3) const bool STACK_IN_REGISTERS = false;

@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 const bool HAS_ALPHA = false;
+const bool HAS_INSTANCES = false;
 const uint STACK_SIZE = 32u;
 const bool STACK_IN_REGISTERS = false;
 
