@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -174,15 +175,23 @@ class StoredMeshes
     }
 
     // Of this mesh of the file. Its space is moved and scaled by a power of two, so that coordinates are at most 1 or
-    // so: no digits of where it lies in the file are lost, and few in the transform.
-    void place(Scene& scene, int mesh, const glm::dmat4& worldFromFile)
+    // so: no digits of where it lies in the file are lost, and few in the transform. Null: it has no triangle.
+    struct Placed {
+        uint32_t instance = 0; // Scene::instances
+        glm::dmat4 nodeFromMesh = glm::dmat4(1);
+    };
+    std::optional<Placed> place(Scene& scene, int mesh, const glm::dmat4& worldFromNode,
+                                const glm::dmat4& nodeFromFile)
     {
         const auto [found, isNew] = meshes_.try_emplace(mesh);
         if (isNew) found->second = read(scene, mesh);
         const Stored& stored = found->second;
-        if (stored.mesh == NONE) return;
-        scene.instances.push_back({stored.mesh, glm::scale(glm::translate(worldFromFile, stored.middle),
-                                                           glm::dvec3(stored.size))});
+        if (stored.mesh == NONE) return {};
+        const Placed placed{.instance = static_cast<uint32_t>(scene.instances.size()),
+                            .nodeFromMesh = glm::scale(glm::translate(nodeFromFile, stored.middle),
+                                                       glm::dvec3(stored.size))};
+        scene.instances.push_back({.mesh = stored.mesh, .worldFromMesh = worldFromNode * placed.nodeFromMesh});
+        return placed;
     }
 
   private:
@@ -233,19 +242,18 @@ MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& s
     const tinygltf::Model& model = document.model;
     MeshPartReader reader(document, warnings);
     MotionPlan plan = planMotion(document, tree, reader, warnings);
-    const std::vector<bool> storedOnce =
-        chooseStoredOnce(document, tree, reader, plan.movesMesh, scene.materials, instancing);
+    const StoredOnce storedOnce(document, tree, reader, plan, scene.materials, instancing);
     const auto isMesh = [&](uint32_t node) { return model.nodes[node].mesh >= 0 && !tree.hidden[node]; };
     const auto moves = [&](uint32_t node) { return plan.motion && plan.movesMesh[node]; };
-    const auto isStoredOnce = [&](uint32_t node) {
-        return storedOnce[static_cast<size_t>(model.nodes[node].mesh)] && model.nodes[node].skin < 0 && !moves(node);
-    };
     Budget budget(document);
-    for (size_t m = 0; m < storedOnce.size(); ++m) budget.addCopies(m, storedOnce[m]);
+    for (size_t m = 0; m < model.meshes.size(); ++m) budget.addCopies(m, storedOnce.is(m) ? 1 : 0);
     for (const uint32_t n : tree.visible) {
         if (!isMesh(n)) continue;
         const size_t count = instanceCount(reader, model.nodes[n]);
-        isStoredOnce(n) ? budget.addInstances(count) : budget.addCopies(size_t(model.nodes[n].mesh), count);
+        if (storedOnce.standsAt(n))
+            budget.addInstances(count);
+        else
+            budget.addCopies(static_cast<size_t>(model.nodes[n].mesh), count);
     }
 
     std::vector<glm::dvec3> positions;
@@ -261,9 +269,14 @@ MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& s
         if (node.skin >= 0) placement.worldFromSkin = skinMatrices(document, tree, reader, node.skin);
         for (const glm::dmat4& instance : instancesOf(reader, node, warnings)) {
             placement.worldFromMesh = tree.worldFromNode[nodeIndex] * instance;
-            const bool once = isStoredOnce(nodeIndex), suits = once && suitsInstance(placement.worldFromMesh);
-            if (once && !suits) budget.addCopies(size_t(node.mesh), 1);
-            if (suits) stored.place(scene, node.mesh, placement.worldFromMesh);
+            const bool once = storedOnce.standsAt(nodeIndex), suits = once && suitsInstance(placement.worldFromMesh);
+            if (once && !suits) budget.addCopies(static_cast<size_t>(node.mesh), 1);
+            if (suits) {
+                const auto placed = stored.place(scene, node.mesh, tree.worldFromNode[nodeIndex], instance);
+                if (placed && moves(nodeIndex))
+                    plan.motion->instances.push_back(
+                        {placed->instance, plan.nodeOf[nodeIndex], placed->nodeFromMesh});
+            }
             for (size_t i = 0; i < mesh.primitives.size(); ++i) {
                 const tinygltf::Primitive& primitive = mesh.primitives[i];
                 const std::string where = nameOf(node.mesh, i);

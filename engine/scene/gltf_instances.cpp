@@ -37,12 +37,36 @@ size_t countOf(const std::array<const Accessor*, 3>& instancing)
     return any == instancing.end() ? 1 : (*any)->count();
 }
 
+// In some pose, if not at rest.
 bool emits(const Document& document, const tinygltf::Mesh& mesh, const std::vector<Material>& materials)
 {
     return std::ranges::any_of(mesh.primitives, [&](const tinygltf::Primitive& primitive) {
-        return isDrawable(document, primitive) &&
-               materials[materialOf(primitive, materials.size())].emission != glm::vec3(0);
+        if (!isDrawable(document, primitive)) return false;
+        const uint32_t material = materialOf(primitive, materials.size());
+        const auto moves = [&](Property property) { return document.animations.moved.contains({property, material}); };
+        return materials[material].emission != glm::vec3(0) || moves(Property::EmissiveFactor) ||
+               moves(Property::EmissiveStrength);
     });
+}
+
+// Whether the transform is a rotation, a mirroring and a scaling by one factor.
+bool isSimilarity(const glm::dmat4& m)
+{
+    const glm::dmat3 linear(m), product = glm::transpose(linear) * linear;
+    const double square = product[0][0];
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (!(std::abs(product[i][j] - (i == j ? square : 0)) <= 1e-6 * square)) return false;
+    return square > 0;
+}
+
+// In all poses: then what is stored once suits all of them.
+bool movesRigidly(const Document& document, const NodeTree& tree, uint32_t node)
+{
+    for (; node != NONE; node = tree.parents[node])
+        if (!isSimilarity(tree.worldFromNode[node]) || document.animations.moved.contains({Property::Scale, node}))
+            return false;
+    return true;
 }
 
 } // namespace
@@ -97,18 +121,23 @@ size_t instanceCount(MeshPartReader& reader, const tinygltf::Node& node)
     return countOf(instancingOf(reader, node));
 }
 
-std::vector<bool> chooseStoredOnce(const Document& document, const NodeTree& tree, MeshPartReader& reader,
-                                   const std::vector<bool>& movesMesh, const std::vector<Material>& materials,
-                                   Instancing instancing)
+StoredOnce::StoredOnce(const Document& document, const NodeTree& tree, MeshPartReader& reader, const MotionPlan& plan,
+                       const std::vector<Material>& materials, Instancing instancing)
+    : chosen_(document.model.meshes.size(), false), mayStand_(document.model.nodes.size(), false)
 {
+    for (const tinygltf::Node& node : document.model.nodes) meshOf_.push_back(node.mesh);
+    if (instancing == Instancing::Off) return;
     const std::vector<tinygltf::Mesh>& meshes = document.model.meshes;
-    std::vector<bool> chosen(meshes.size(), false);
-    if (instancing == Instancing::Off) return chosen;
-    std::vector<uint64_t> places(meshes.size(), 0);
+    const bool on = instancing == Instancing::On;
+    std::vector<uint64_t> places(meshes.size(), 0), moving(meshes.size(), 0);
     for (const uint32_t n : tree.visible) {
         const tinygltf::Node& node = document.model.nodes[n];
-        if (node.mesh >= 0 && !tree.hidden[n] && node.skin < 0 && !(n < movesMesh.size() && movesMesh[n]))
-            places[static_cast<size_t>(node.mesh)] += instanceCount(reader, node);
+        if (node.mesh < 0 || tree.hidden[n] || node.skin >= 0) continue;
+        const bool moves = plan.motion && plan.movesMesh[n];
+        if (moves && !movesRigidly(document, tree, n)) continue;
+        mayStand_[n] = true;
+        places[static_cast<size_t>(node.mesh)] += instanceCount(reader, node);
+        moving[static_cast<size_t>(node.mesh)] += moves;
     }
     double copies = 0; // no overflow
     for (size_t m = 0; m < meshes.size(); ++m) {
@@ -118,12 +147,12 @@ std::vector<bool> chooseStoredOnce(const Document& document, const NodeTree& tre
             triangles += sizeOf(document, primitive).triangles;
             morphs |= !primitive.targets.empty();
         }
-        const bool worth = instancing == Instancing::On ? triangles > 0 : triangles >= FEW_TRIANGLES;
-        chosen[m] = places[m] > 1 && worth && !morphs && !emits(document, meshes[m], materials);
-        if (chosen[m]) copies += static_cast<double>(places[m] - 1) * static_cast<double>(triangles);
+        const bool worth = on ? triangles > 0 : triangles >= FEW_TRIANGLES;
+        chosen_[m] = (places[m] > 1 || (on && moving[m] > 0)) && worth && !morphs &&
+                     !emits(document, meshes[m], materials);
+        if (chosen_[m]) copies += static_cast<double>(places[m] - 1) * static_cast<double>(triangles);
     }
-    if (instancing == Instancing::Auto && copies < static_cast<double>(MANY_COPIES)) chosen.assign(meshes.size(), false);
-    return chosen;
+    if (!on && copies < static_cast<double>(MANY_COPIES)) chosen_.assign(meshes.size(), false);
 }
 
 } // namespace scene::gltf

@@ -6,8 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/scene/gltf_mesh_part.h"
-#include "engine/scene/gltf_nodes.h"
+#include "engine/scene/gltf_motion.h"
 #include "engine/scene/instances.h"
 
 namespace scene::gltf
@@ -26,9 +25,20 @@ struct PrimitiveSize {
 };
 PrimitiveSize sizeOf(const Document& document, const tinygltf::Primitive& primitive);
 
-// By mesh of the file: those that stand in several places, keep their shape and do not emit. Auto: where copies are many.
-std::vector<bool> chooseStoredOnce(const Document& document, const NodeTree& tree, MeshPartReader& reader,
-                                   const std::vector<bool>& movesMesh, const std::vector<Material>& materials,
-                                   Instancing instancing);
+// Which meshes of a file are stored once, and where: those that stand in several places and do not emit.
+class StoredOnce
+{
+  public:
+    // Auto: where copies are many. On: also a mesh in one place, if that moves.
+    StoredOnce(const Document& document, const NodeTree& tree, MeshPartReader& reader, const MotionPlan& plan,
+               const std::vector<Material>& materials, Instancing instancing);
+    bool is(size_t mesh) const { return chosen_[mesh]; }
+    bool standsAt(uint32_t node) const { return mayStand_[node] && is(static_cast<size_t>(meshOf_[node])); }
+
+  private:
+    std::vector<bool> chosen_;   // by mesh
+    std::vector<bool> mayStand_; // by node
+    std::vector<int> meshOf_;    // by node
+};
 
 } // namespace scene::gltf

@@ -32,40 +32,6 @@ glm::dvec3 rowOf(const glm::dmat3& m, int i)
     return {m[0][i], m[1][i], m[2][i]};
 }
 
-template <class T>
-void append(std::vector<T>& to, size_t before, const std::vector<T>& from, size_t count, const T& absent)
-{
-    if (to.empty() && from.empty()) return;
-    to.resize(before, absent);
-    to.insert(to.end(), from.begin(), from.end());
-    to.resize(before + count, absent);
-}
-
-void append(Scene& scene, const Geometry& mesh, const glm::dmat4& worldFromMesh)
-{
-    const glm::dmat3 linear(worldFromMesh);
-    const bool mirrors = glm::determinant(linear) < 0;
-    const glm::dmat3 normals = glm::transpose(glm::inverse(linear));
-    const size_t before = scene.positions.size(), count = mesh.positions.size();
-    for (size_t v = 0; v < count; ++v) {
-        scene.positions.emplace_back(worldFromMesh * glm::dvec4(glm::dvec3(mesh.positions[v]), 1));
-        scene.normals.emplace_back(glm::normalize(normals * glm::dvec3(mesh.normals[v])));
-    }
-    std::vector<glm::vec4> tangents;
-    for (const glm::vec4& tangent : mesh.tangents)
-        tangents.emplace_back(glm::normalize(linear * glm::dvec3(glm::vec3(tangent))),
-                              mirrors ? -tangent.w : tangent.w);
-    append(scene.tangents, before, tangents, count, glm::vec4(1, 0, 0, 1));
-    append(scene.uv0, before, mesh.uv0, count, glm::vec2(0));
-    append(scene.uv1, before, mesh.uv1, count, glm::vec2(0));
-    append(scene.colors, before, mesh.colors, count, glm::vec4(1));
-    for (Triangle triangle : mesh.triangles) {
-        for (uint32_t& vertex : triangle.vertices) vertex += uint32_t(before);
-        if (mirrors) std::swap(triangle.vertices[1], triangle.vertices[2]);
-        scene.triangles.push_back(triangle);
-    }
-}
-
 // Records and nodes of a tree behind those of others.
 void append(MeshTables& tables, const Bvh& bvh)
 {
@@ -145,20 +111,12 @@ double squaredRadiusOfInstances(const Scene& scene)
     for (const Geometry& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
     double squared = 0;
     for (const Instance& instance : scene.instances) {
+        if (!instance.visible) continue;
         const auto [lower, upper] = extentOf(boxes[instance.mesh], instance.worldFromMesh);
         const glm::dvec3 p = glm::max(glm::abs(lower), glm::abs(upper));
         squared = std::max(squared, glm::dot(p, p));
     }
     return squared;
-}
-
-Scene expanded(const Scene& scene)
-{
-    Scene flat = scene;
-    flat.instances.clear();
-    flat.meshes.clear();
-    for (const Instance& instance : scene.instances) append(flat, scene.meshes[instance.mesh], instance.worldFromMesh);
-    return flat;
 }
 
 MeshTables makeMeshTables(const Scene& scene, uint32_t attributeRows, uint64_t maxTableBytes)
@@ -201,14 +159,18 @@ PlaceTables placeInstances(const Scene& scene, const MeshTables& meshes, double 
 {
     PlaceTables tables{.flatTriangles = uint32_t(scene.triangles.size())};
     std::vector<glm::dmat4> transforms;
-    std::vector<Box> boxes;
+    std::vector<Box> boxes; // of those that are visible
+    std::vector<uint32_t> visible;
     for (const Instance& instance : scene.instances) {
         const MeshTables::Mesh& mesh = meshes.meshes[instance.mesh];
         glm::dmat4 world = instance.worldFromMesh;
         for (int i = 0; i < 4; ++i) world[i] = glm::dvec4(glm::dvec3(world[i]) * lengthScale, world[i].w);
         transforms.push_back(world);
         const auto [lower, upper] = extentOf(mesh.box, world);
-        boxes.push_back({glm::vec3(lower), glm::vec3(upper)});
+        if (instance.visible) {
+            visible.push_back(uint32_t(transforms.size() - 1));
+            boxes.push_back({glm::vec3(lower), glm::vec3(upper)});
+        }
         const glm::dmat3 linear(world);
         const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(mesh.box.lower)), glm::abs(glm::dvec3(mesh.box.upper)));
         const glm::dvec3 size = glm::abs(glm::dvec3(world[3])) + absolute(linear) * reach;
@@ -220,7 +182,8 @@ PlaceTables placeInstances(const Scene& scene, const MeshTables& meshes, double 
     }
     BoxTree tree = buildBoxTree(boxes);
     tables.nodes = std::move(tree.nodes);
-    for (const uint32_t i : tree.order) {
+    for (const uint32_t leaf : tree.order) {
+        const uint32_t i = visible[leaf];
         const glm::dmat3 inverse = glm::inverse(glm::dmat3(transforms[i]));
         for (int r = 0; r < 3; ++r) tables.records.push_back(row(rowOf(inverse, r), transforms[i][3][r]));
         tables.records.emplace_back(meshes.meshes[scene.instances[i].mesh].rootNode,

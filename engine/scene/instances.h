@@ -32,9 +32,6 @@ Extent extentOf(const Box& box, const glm::dmat4& worldFromMesh);
 // Of a sphere about the origin that holds all boxes of instances.
 double squaredRadiusOfInstances(const Scene& scene);
 
-// The scene with a copy of its mesh for each instance and no instances: the same world, flat.
-Scene expanded(const Scene& scene);
-
 // As tables. Rows of what all poses share: trees, records and attributes of the meshes, one after the other.
 struct MeshTables {
     std::vector<glm::uvec4> nodes, triangles, attributes;

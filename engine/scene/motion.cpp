@@ -114,13 +114,26 @@ void hidePart(Scene& scene, const Motion::Part& part, const Mesh& mesh)
         scene.triangles[t].vertices.fill(part.firstVertex);
 }
 
+constexpr double FARTHEST = LARGEST_SCENE / 2;
+
+bool isNear(const glm::dvec3& position) // also not where one is NaN
+{
+    return glm::all(glm::lessThanEqual(glm::abs(position), glm::dvec3(FARTHEST)));
+}
+
+Error tooFar(double seconds, const std::string& what)
+{
+    return Error("At {} s, {} is more than {} m from the middle of the scene or not finite: choose another time or "
+                 "animation.",
+                 seconds, what, FARTHEST);
+}
+
 void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, bool atRest, double seconds)
 {
-    constexpr double FARTHEST = LARGEST_SCENE / 2;
     std::vector<bool> lost(posed.vertices.size(), false);
     for (size_t v = 0; v < posed.vertices.size(); ++v) {
         const glm::dvec3 position = posed.vertices[v].position - scene.origin;
-        lost[v] = !glm::all(glm::lessThanEqual(glm::abs(position), glm::dvec3(FARTHEST))); // also where one is NaN
+        lost[v] = !isNear(position);
         scene.positions[part.firstVertex + v] = lost[v] ? glm::vec3(0) : glm::vec3(position);
     }
     for (size_t t = 0; t < posed.triangles.size(); ++t) {
@@ -132,11 +145,7 @@ void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, bo
         std::array<glm::dvec3, 3> corners;
         for (size_t i = 0; i < 3; ++i) {
             const uint32_t v = posed.triangles[t][i];
-            if (lost[v])
-                throw Error(
-                    "At {} s, vertex {} of {} is more than {} m from the middle of the scene or not finite: choose "
-                    "another time or animation.",
-                    seconds, v, part.name, FARTHEST);
+            if (lost[v]) throw tooFar(seconds, fmt::format("vertex {} of {}", v, part.name));
             vertices[i] = part.firstVertex + v;
             corners[i] = scene.positions[vertices[i]];
         }
@@ -148,6 +157,20 @@ void writePart(Scene& scene, const Motion::Part& part, const MeshPart& posed, bo
     write(scene.uv0, part.firstVertex, posed, posed.hasUv[0], [](const Vertex& v) { return v.uv[0]; });
     write(scene.uv1, part.firstVertex, posed, posed.hasUv[1], [](const Vertex& v) { return v.uv[1]; });
     write(scene.colors, part.firstVertex, posed, posed.hasColors, [](const Vertex& v) { return v.color; });
+}
+
+void placeInstances(Scene& scene, const Motion& motion, const World& world, double seconds)
+{
+    for (const Motion::PlacedInstance& placed : motion.instances) {
+        Instance& instance = scene.instances[placed.instance];
+        instance.visible = world.visible[placed.node];
+        instance.worldFromMesh = world.worldFromNode[placed.node] * placed.nodeFromMesh;
+        instance.worldFromMesh[3] -= glm::dvec4(scene.origin, 0);
+        // Its coordinates are at most about 1 in its own space.
+        glm::dvec3 farthest(0);
+        for (int i = 0; i < 4; ++i) farthest += glm::abs(glm::dvec3(instance.worldFromMesh[i]));
+        if (!isNear(farthest)) throw tooFar(seconds, fmt::format("instance {}", placed.instance));
+    }
 }
 
 void placeLights(Scene& scene, const Motion& motion, const State& state, const World& world)
@@ -196,7 +219,7 @@ void paint(Scene& scene, const State& state)
 uint64_t Motion::bytes() const
 {
     const auto size = [](const auto& array) { return uint64_t{array.size() * sizeof(array[0])}; };
-    uint64_t sum = size(nodes) + size(parts);
+    uint64_t sum = size(nodes) + size(parts) + size(instances);
     for (const auto& array : numbers) sum += size(array);
     for (const Mesh& mesh : meshes) {
         sum += size(mesh.triangles) + size(mesh.vertices.influenceEnds) + size(mesh.vertices.influences);
@@ -247,6 +270,10 @@ uint64_t Motion::fingerprint() const
     for (const Part& part : parts) {
         takeWords({part.node, part.mesh, part.skin, part.firstVertex, part.firstTriangle});
         takeMatrix(part.nodeFromMesh);
+    }
+    for (const PlacedInstance& placed : instances) {
+        takeWords({placed.instance, placed.node});
+        takeMatrix(placed.nodeFromMesh);
     }
     for (const Lamp& lamp : lamps)
         takeDoubles(
@@ -310,6 +337,7 @@ void pose(Scene& scene, std::span<const uint32_t> animations, double seconds)
         const TextureUse& normalTexture = scene.materials[scene.triangles[part.firstTriangle].material].normalTexture;
         writePart(scene, part, poseMesh(mesh, placement, normalTexture), animations.empty(), seconds);
     }
+    placeInstances(scene, motion, world, seconds);
     placeLights(scene, motion, state, world);
     placeCameras(scene, motion, state, world);
     paint(scene, state);

@@ -43,6 +43,12 @@ struct Motion {
         glm::dmat4 nodeFromMesh = glm::dmat4(1);     // EXT_mesh_gpu_instancing
         uint32_t firstVertex = 0, firstTriangle = 0; // in the flat scene
     };
+    // A mesh that is stored once, in a place that moves rigidly.
+    struct PlacedInstance {
+        uint32_t instance = 0; // Scene::instances
+        uint32_t node = 0;
+        glm::dmat4 nodeFromMesh = glm::dmat4(1);
+    };
     struct PlacedLight {
         uint32_t light = 0;   // Scene::lights. Hidden or without a direction, its intensity is 0
         uint32_t node = NONE; // NONE: it stands still
@@ -72,6 +78,7 @@ struct Motion {
     std::vector<Skin> skins;
     std::vector<Mesh> meshes;
     std::vector<Part> parts;
+    std::vector<PlacedInstance> instances;
     std::vector<Lamp> lamps;
     std::vector<PlacedLight> lights;
     std::vector<Lens> lenses;
@@ -91,7 +98,7 @@ std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& ch
 bool contested(const Motion& motion, std::span<const uint32_t> animations);
 
 // The flat scene as these animations (indices; none: at rest) have it at `seconds`. It depends on nothing else: what
-// moves is written anew, whatever the scene's pose was. Scene::origin, the counts of vertices, triangles, lights,
+// moves is written anew, whatever the scene's pose was. Scene::origin, the counts of vertices, triangles, instances, lights,
 // cameras and materials and their order are those of rest. Without Scene::motion nothing changes. Throws Error, and
 // leaves the pose unfinished, where something is too far away or, unless at rest, not finite.
 void pose(Scene& scene, std::span<const uint32_t> animations, double seconds);

@@ -129,6 +129,7 @@ struct Geometry {
 struct Instance {
     uint32_t mesh = 0;
     glm::dmat4 worldFromMesh = glm::dmat4(1); // world relative to Scene::origin
+    bool visible = true;
 };
 
 struct Scene : Geometry { // in the world

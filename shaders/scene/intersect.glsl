@@ -379,6 +379,8 @@ bool advance(inout InstanceWalk walk, TraversalRay r, float tMax, uint order)
     return walk.records != 0u;
 }
 
+const float BEYOND = 1.00000048; // 1 + 2^-21: what is as far, but for rounding, is found, and the distance in the world decides
+
 // First what lies in the world, then instance by instance, roughly front to back. The ray goes into a mesh's space from where
 // it has advanced in the world, so that the rounding of coordinates there is of the world's size, too.
 Hit traverse(Ray ray, uint alphaSeed, bool any)
@@ -428,7 +430,7 @@ Hit traverse(Ray ray, uint alphaSeed, bool any)
             float inside = length(direction);
             scale = more ? inside : scale;
             before = more ? outside.advance : before;
-            tMax = more ? (nearest.t - outside.advance) * inside : tMax;
+            tMax = more ? (nearest.t - outside.advance) * (any ? inside : inside * BEYOND) : tMax;
             root = more ? mesh.x : root;
             firstTriangle = more ? mesh.y : firstTriangle;
             if (more) r = prepare(Ray(origin, direction / inside, 0.0), root, 0.0);

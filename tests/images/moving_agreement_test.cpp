@@ -43,6 +43,8 @@ std::vector<RestirCase> movingCases()
             {"WallStretches", RestirPt, Reconnection, Temporal, false, 8, 300, 6},
             {"BallMirrored", RgbRestir, Hybrid, Both, false, 8},
             {"BallWobbles", GroupedRestir, Hybrid, Both, true, 8},
+            {"CopiesTurn", RgbRestir, Hybrid, Both, false, 8},
+            {"CopiesTurn", RestirPt, Reconnection, Temporal, true, 64, 300, 6},
             {"LampMoves", RgbRestir, Hybrid, Both, false, 8},
             {"LampChanges", RgbRestir, Hybrid, Both, false, 8, 600, 5},
             {"LampChanges", RestirPt, Replay, Temporal, false, 64, 300, 6},

@@ -113,6 +113,19 @@ Scene ballMirrored(uint32_t frame)
     moveMaterial(scene, BALL, glm::scale(turned, {frame % 2 ? -1.0f : 1.0f, 1, 1}));
     return scene;
 }
+// Bodies stored once that roll, are mirrored in turn, come and go.
+Scene copiesTurn(uint32_t frame)
+{
+    Scene scene = moving(testScene("Copies"));
+    const double x = 0.1 * frame;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        glm::dmat4& place = scene.instances[i].worldFromMesh;
+        place = glm::rotate(glm::translate(place, {x, 0, 0}), 0.3 * x * double(i), glm::dvec3(0, 1, 0));
+    }
+    if (frame % 2) scene.instances[1].worldFromMesh = glm::scale(scene.instances[1].worldFromMesh, {-1, 1, 1});
+    scene.instances[2].visible = frame % 3 != 1;
+    return scene;
+}
 // Every vertex by itself, as skins and morph targets move them.
 Scene ballWobbles(uint32_t frame)
 {
@@ -255,7 +268,7 @@ std::vector<MovingWorld> movingWorlds()
     return {
         {"BallRolls", ballRolls},          {"BallJumps", ballJumps},     {"BallParks", ballParks},
         {"BallVanishes", ballVanishes},    {"BallGrows", ballGrows},     {"WallStretches", wallStretches},
-        {"BallMirrored", ballMirrored},    {"BallWobbles", ballWobbles}, {"LampMoves", lampMoves},
+        {"BallMirrored", ballMirrored},    {"BallWobbles", ballWobbles}, {"CopiesTurn", copiesTurn}, {"LampMoves", lampMoves},
         {"LampChanges", lampChanges},      {"CeilingLit", ceilingLit},   {"LightsWander", lightsWander, 2},
         {"PaintDries", paintDries},        {"MirrorMoves", mirrorMoves}, {"GlassMoves", glassMoves, 5},
         {"PanesSlide", panesSlide, 2},     {"BumpsMove", bumpsMove, 2},  {"OrthographicBall", orthographicBall, 2},

@@ -3,6 +3,7 @@
 #include "engine/base/check.h"
 #include "passes/camera_path.h"
 #include "tests/support/reference_material.h"
+#include "tests/support/stored_meshes.h"
 
 #include <algorithm>
 #include <atomic>
@@ -313,10 +314,11 @@ Ray cameraRay(const scene::Camera& camera, const passes::Settings& settings, dou
 
 } // namespace
 
-PixelEstimates reference(const scene::Scene& scene, const passes::Settings& settings, uint64_t samplesPerPixel,
+PixelEstimates reference(const scene::Scene& world, const passes::Settings& settings, uint64_t samplesPerPixel,
                          uint64_t seed)
 {
     CHECK(samplesPerPixel >= 2);
+    const scene::Scene scene = expanded(world);
     const Tracer tracer(scene, settings);
     const scene::Camera& camera = scene.cameras[passes::chooseCamera(scene, settings.camera)];
     PixelEstimates result{settings.width, settings.height, {}};

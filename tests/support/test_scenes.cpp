@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/scene/shapes.h"
+#include "tests/support/stored_meshes.h"
 
 namespace support
 {
@@ -271,6 +272,35 @@ Scene alphaBlend()
     addAttributes(scene);
     return scene;
 }
+// A ball with normal map and vertex colors in four places: as it was, flattened, mirrored, and both.
+Scene copies()
+{
+    Scene scene = ballOf({.baseColor = COPPER, .metallic = 0.3f, .roughness = 0.4f, .normalScale = 0.6f});
+    scene.materials[1].normalTexture = {.image = addBumps(scene)};
+    addAttributes(scene);
+    addColors(scene);
+    const auto place = [](glm::dvec3 to, double angle, glm::dvec3 scale) {
+        const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), to), angle, glm::dvec3(0.3, 1, 0.2));
+        return glm::scale(turned, scale);
+    };
+    return storedOnce(std::move(scene), 1,
+                      {place({-0.6, 0, -0.7}, 0, {0.9, 0.9, 0.9}), place({0.8, 0, -0.4}, 0.7, {0.7, 0.4, 0.9}),
+                       place({0.1, 0.05, 0.9}, 2, {-0.4, 0.4, 0.4}), place({-0.9, 0.1, 0.6}, -1, {0.3, 0.5, -0.4})});
+}
+// A wall with holes, twice.
+Scene maskedCopies()
+{
+    const glm::dmat4 left = glm::translate(glm::dmat4(1), {-0.4, 0, 0.2});
+    const glm::dmat4 right = glm::rotate(glm::translate(glm::dmat4(1), {0.5, 0, 0.5}), 0.9, glm::dvec3(0, 1, 0));
+    return storedOnce(alphaMask(), 1, {glm::scale(left, {-0.7, 0.8, 1}), glm::scale(right, glm::dvec3(0.6))});
+}
+// Closed bodies that touch the floor and each other.
+Scene glassCopies()
+{
+    const glm::dmat4 left = glm::translate(glm::dmat4(1), {-0.6, -0.15, 0});
+    const glm::dmat4 right = glm::rotate(glm::translate(glm::dmat4(1), {0.7, 0, 0.3}), 0.4, glm::dvec3(0, 1, 0));
+    return storedOnce(clearGlass(), 1, {left, glm::scale(right, {-0.8, 1.2, 0.8})});
+}
 Scene unlit()
 {
     Scene scene = ballOf({.baseColor = COPPER, .unlit = true});
@@ -455,6 +485,9 @@ std::vector<TestScene> testScenes()
         {"FarTriangle", farTriangle},
         {"Dome", dome, 4},
         {"WideGround", wideGround},
+        {"Copies", copies, 2},
+        {"MaskedCopies", maskedCopies, 2},
+        {"GlassCopies", glassCopies, 3},
         {"Unlit", unlit, 2},
         {"PointLight", pointLight, 2},
         {"SpotLight", spotLight, 2},

@@ -41,6 +41,7 @@ class Intersect : public GpuTest
 {
   protected:
     std::optional<scene::TraversalStack> forcedStack; // instead of the one that fits device and tree
+    std::vector<gpu::Constant> constants;             // of the kernel, beside those that every trace() has
 
     static scene::BvhInput inputOf(const Mesh& mesh)
     {
@@ -60,10 +61,12 @@ class Intersect : public GpuTest
         solidWords.resize(std::max<size_t>(solidWords.size(), 4));
         const gpu::Buffer solid = upload("solid", solidWords);
         const gpu::Buffer hits = create<Hit>("hits", rays.size());
+        std::vector<gpu::Constant> all = constants;
+        all.insert(all.end(), {{"HAS_ALPHA", mesh.needsAlphaTest.empty() ? 0u : 1u},
+                               {"STACK_SIZE", stack.entries},
+                               {"STACK_IN_REGISTERS", stack.inRegisters ? 1u : 0u}});
         run({.shader = TEST_SPIRV_DIR "/intersect_test",
-             .constants = {{"HAS_ALPHA", mesh.needsAlphaTest.empty() ? 0u : 1u},
-                           {"STACK_SIZE", stack.entries},
-                           {"STACK_IN_REGISTERS", stack.inRegisters ? 1u : 0u}},
+             .constants = all,
              .buffers = {{"Nodes", &nodes},
                          {"Triangles", &triangles},
                          {"Rays", &rayBuffer},

@@ -6,10 +6,12 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const bool HAS_ALPHA = false;
-const bool HAS_INSTANCES = false;
 layout(constant_id = 1) const bool TRACE_OCCLUDED = true;
 layout(constant_id = 2) const uint STACK_SIZE = 32u;
 layout(constant_id = 3) const bool STACK_IN_REGISTERS = false;
+layout(constant_id = 4) const bool HAS_INSTANCES = false;
+layout(constant_id = 5) const uint INSTANCE_TREE = 0u;
+#define INSTANCE_ROOT INSTANCE_TREE
 
 TABLE(SET_SCENE, 0, Nodes);
 TABLE(SET_SCENE, 1, Triangles);
