@@ -158,7 +158,7 @@ TEST_F(Instances, OfSeveralAtOneDistanceTheFirstIsMet)
 {
     scene::Scene scene = heap(2);
     scene.instances[1] = scene.instances[0];
-    const std::vector<Hit> hits = traceInstances(scene, raysAt({0, 0, 0}, 4000));
+    const std::vector<Hit> hits = traceInstances(scene, raysAt({0, 0, 0}, 40000));
     size_t placed = 0;
     for (const Hit& hit : hits) {
         if (!hit.isHit() || hit.triangle() < scene.triangles.size()) continue;
