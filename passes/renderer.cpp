@@ -179,7 +179,7 @@ void Renderer::encodeFrame(gpu::CommandEncoder& encoder, const FrameState& state
 
 void Renderer::renderFrame()
 {
-    frame_.frame = uint32_t(frameCount_);
+    frame_.frame = nextFrame_++;
     frame_.previousSlice = frame_.slice;
     CHECK(hasPose_);
     moved_ = frame_.world != lastWorld_;
@@ -207,6 +207,7 @@ void Renderer::renderFrame()
 void Renderer::reset()
 {
     wait();
+    nextFrame_ = 0;
     frameCount_ = 0;
     historyFrames_ = 0;
     frame_.previousCamera = frame_.camera;
@@ -353,6 +354,7 @@ void Renderer::restore(const RendererState& state)
     reset();
     for (size_t i = 0; i < buffers.size(); ++i) device_.queue().write(*buffers[i], state.buffers[i].second);
     frameCount_ = state.frames;
+    nextFrame_ = uint32_t(frameCount_);
     historyFrames_ = state.historyFrames;
     frame_.camera = state.camera;
     frame_.previousCamera = state.previousCamera;

@@ -74,7 +74,10 @@ class Renderer
     void renderFrame();                                 // encodes and submits one frame; keeps at most two in flight
     uint64_t frameCount() const { return frameCount_; } // submitted since the last reset
     uint32_t runs() const { return runs_; }
-    void reset(); // forgets all frames
+    void reset();                                // forgets all frames
+    void forgetHistory() { historyFrames_ = 0; } // the next frame reuses none before it; the film goes on
+    // Which random numbers the next frame has; those after it count on. After a reset: 0.
+    void setFrame(uint32_t number) { nextFrame_ = number; }
     // From the next frame on; does what the settings' `Change` says. The scene, its environment and the camera stay.
     void apply(const Settings& settings);
     void recompile(); // takes all stages from pipelines() anew, once that holds other ones; starts over
@@ -132,6 +135,7 @@ class Renderer
     bool moved_ = false;                            // before the last frame
     bool hasPose_ = true;
     std::optional<double> sceneSeconds_;
+    uint32_t nextFrame_ = 0;                      // its number, for random numbers
     uint64_t frameCount_ = 0, historyFrames_ = 0; // the latter of reservoirs that the next frame may reuse
     std::map<std::string, double> milliseconds_;  // summed over timedFrames_
     uint64_t timedFrames_ = 0;

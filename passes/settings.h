@@ -66,6 +66,12 @@ struct Settings {
     bool operator==(const Settings&) const = default;
 };
 
+// Does a frame depend on those before it?
+constexpr bool reusesFrames(const Settings& settings)
+{
+    return settings.method != Method::Pt && settings.temporal;
+}
+
 // What a knob decides. Scene, View and Picture together say which picture is right; the others how one gets there.
 enum class Role : uint8_t {
     Scene,     // what there is

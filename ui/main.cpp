@@ -8,7 +8,7 @@
 #include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 
-#include <cstdio>
+#include <iostream>
 #include <new>
 #include <system_error>
 
@@ -17,13 +17,7 @@ namespace
 
 constexpr int EXIT_WORLD = 1, EXIT_USAGE = 2;
 
-int say(int code, const char* sentence)
-{
-    std::fprintf(stderr, "trichrome: %s\n", sentence);
-    return code;
-}
-
-int trichrome(int argc, char** argv)
+ui::Ending trichrome(int argc, char** argv)
 {
     CLI::App app("Trichrome renders glTF scenes by path tracing, ReSTIR PT and RGB ReSTIR on any Vulkan device.");
     app.name("trichrome");
@@ -44,30 +38,32 @@ int trichrome(int argc, char** argv)
             shares = own;
         });
     }
-    if (!known)
-        return say(EXIT_USAGE, fmt::format("There is no command \"{}\"; there are: {}.", argv[1], names).c_str());
+    if (!known) throw ui::UsageError("There is no command \"{}\"; there are: {}.", argv[1], names);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : EXIT_USAGE; // 0: --help, --version
+        std::ostream nowhere(nullptr); // all processes have the same to say
+        const bool speaks = ui::ranks().index() == 0;
+        const int code = app.exit(error, speaks ? std::cout : nowhere, speaks ? std::cerr : nowhere);
+        return {code == 0 ? 0 : EXIT_USAGE, {}}; // 0: --help, --version
     }
     if (!shares && ui::ranks().count() > 1)
-        throw ui::UsageError("Only correlate shares its work over processes; start this command once.");
-    return chosen();
+        throw ui::UsageError("Only render and correlate share their work over processes; start this command once.");
+    return {chosen(), {}};
 }
 
-int guarded(int argc, char** argv)
+ui::Ending guarded(int argc, char** argv)
 {
     try {
         return trichrome(argc, argv);
     } catch (const ui::UsageError& error) {
-        return say(EXIT_USAGE, error.what());
+        return {EXIT_USAGE, error.what()};
     } catch (const Error& error) {
-        return say(EXIT_WORLD, error.what());
+        return {EXIT_WORLD, error.what()};
     } catch (const std::bad_alloc&) {
-        return say(EXIT_WORLD, "Out of memory.");
+        return {EXIT_WORLD, "Out of memory."};
     } catch (const std::system_error& error) { // threads, folders
-        return say(EXIT_WORLD, fmt::format("The system refuses: {}.", error.what()).c_str());
+        return {EXIT_WORLD, fmt::format("The system refuses: {}.", error.what())};
     }
 }
 

@@ -4,6 +4,8 @@
 #include "ui/cli/interrupt.h"
 #include "ui/cli/ranks.h"
 
+#include <algorithm>
+
 #define OMPI_SKIP_MPICXX // the C interface alone
 #include <mpi.h>
 
@@ -26,7 +28,12 @@ class Mpi : public Ranks
     }
     uint32_t index() const override { return uint32_t(index_); }
     uint32_t count() const override { return uint32_t(count_); }
-    void barrier() const override { MPI_Barrier(MPI_COMM_WORLD); }
+    int meet() const override { return meetWith({}); }
+
+    void sum(std::vector<double>& values) const override
+    {
+        MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    }
 
     std::vector<Bytes> gather(const std::vector<Bytes>& records) const override
     {
@@ -51,16 +58,34 @@ class Mpi : public Ranks
         return all;
     }
 
-    int finish(int exitCode) const override
+    int finish(const Ending& ending) const override
     {
-        if (exitCode != 0 && exitCode != Interrupt::exitCode())
+        int exitCode = ending.exitCode;
+        if (!met_ && exitCode != 0) {
+            exitCode = meetWith(ending);
+        } else if (exitCode != 0 && exitCode != Interrupt::exitCode() && !calledOff_) {
+            Ranks::finish(ending);
             MPI_Abort(MPI_COMM_WORLD, exitCode); // else the others wait
+        }
         MPI_Finalize();
         return exitCode;
     }
 
   private:
+    int meetWith(const Ending& own) const
+    {
+        met_ = true;
+        std::vector<int> codes(size_t(count_), 0);
+        MPI_Allgather(&own.exitCode, 1, MPI_INT, codes.data(), 1, MPI_INT, MPI_COMM_WORLD);
+        const auto failed = std::ranges::find_if(codes, [](int code) { return code != 0; });
+        if (failed == codes.end()) return 0;
+        calledOff_ = true;
+        if (failed - codes.begin() == index_) Ranks::finish(own);
+        return *failed;
+    }
+
     int index_ = 0, count_ = 1;
+    mutable bool met_ = false, calledOff_ = false;
 };
 
 } // namespace

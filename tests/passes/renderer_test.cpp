@@ -57,6 +57,32 @@ TEST_F(RendererTest, StartsAgainAfterAReset)
     EXPECT_EQ(frames(renderer, 3), before);
 }
 
+// So that a chain of frames can begin anywhere, and is the same whatever was rendered before.
+TEST_F(RendererTest, ForgetsHistoryAndGoesOnWithAnyFrame)
+{
+    passes::Settings settings = settings_;
+    settings.method = passes::Method::RestirPt;
+    settings.average = false;
+    Renderer one = make(settings), other(one, settings);
+    const auto chain = [](Renderer& renderer) { // frames 5 and 6
+        renderer.setFrame(5);
+        renderer.forgetHistory();
+        frames(renderer, 2);
+        return renderer.read(passes::LAST_FRAME).pixels;
+    };
+    const Pixels first = chain(one);
+    frames(other, 3);
+    EXPECT_EQ(chain(other), first);
+    EXPECT_EQ(other.frameCount(), 5u);
+    other.setFrame(5);
+    frames(other, 2);
+    EXPECT_NE(other.read(passes::LAST_FRAME).pixels, first); // with history
+    other.reset();
+    one.reset();
+    one.setFrame(0);
+    EXPECT_EQ(frames(other, 1), frames(one, 1));
+}
+
 TEST_F(RendererTest, GivesOtherPixelsForOtherSeedsAndFrames)
 {
     passes::Settings other = settings_;

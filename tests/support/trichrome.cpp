@@ -14,9 +14,19 @@ std::filesystem::path executable(const std::string& name)
     return std::filesystem::read_symlink("/proc/self/exe").replace_filename(name);
 }
 
+const std::filesystem::path MPIRUN = "/usr/bin/mpirun";
+
 bool isIn(const std::vector<std::string>& words, const std::string& word)
 {
     return std::ranges::find(words, word) != words.end();
+}
+
+// Commands that take --device get it.
+std::vector<std::string> onDevice(std::vector<std::string> arguments, const std::string& device)
+{
+    if (arguments.size() > 1 && arguments[0] != "compare" && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
+        arguments.insert(arguments.end(), {"--device", device});
+    return arguments;
 }
 
 } // namespace
@@ -30,10 +40,32 @@ std::string Trichrome::deviceName()
 Outcome Trichrome::run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter, int signal,
                        const std::string& program)
 {
-    if (arguments.size() > 1 && arguments[0] != "compare" && !isIn(arguments, "--device") && !isIn(arguments, "--help"))
-        arguments.insert(arguments.end(), {"--device", deviceName()});
-    return runProgram(executable(program),
-                      {.arguments = std::move(arguments), .signalAfter = signalAfter, .signal = signal});
+    return runProgram(
+        executable(program),
+        {.arguments = onDevice(std::move(arguments), deviceName()), .signalAfter = signalAfter, .signal = signal});
+}
+
+std::string Trichrome::missingForRanks()
+{
+    if (std::filesystem::exists(executable("trichrome-mpi")) && std::filesystem::exists(MPIRUN)) return "";
+    return "SKIPPED, SEVERAL RANKS NOT TESTED: there is no trichrome-mpi or no mpirun (Debian packages "
+           "libopenmpi-dev, openmpi-bin)";
+}
+
+Outcome Trichrome::runRanks(int count, const std::vector<std::string>& arguments,
+                            const std::vector<std::string>& another)
+{
+    std::vector<std::string> words = {"--allow-run-as-root", "--oversubscribe"};
+    const auto add = [&](int processes, const std::vector<std::string>& more) {
+        words.insert(words.end(), {"-n", std::to_string(processes), executable("trichrome-mpi").string()});
+        for (const std::string& word : onDevice(more, deviceName())) words.push_back(word);
+    };
+    add(count, arguments);
+    if (!another.empty()) {
+        words.emplace_back(":");
+        add(1, another);
+    }
+    return runProgram(MPIRUN, {.arguments = words});
 }
 
 Outcome Trichrome::runWell(const std::vector<std::string>& arguments)

@@ -14,6 +14,12 @@ class Trichrome : public testing::Test
     static Outcome run(std::vector<std::string> arguments, std::chrono::milliseconds signalAfter = {},
                        int signal = SIGINT, const std::string& program = "trichrome");
 
+    // As several processes of MPI; `another` are the arguments of one more. Needs trichrome-mpi, which is built where
+    // MPI is, and mpirun: what is missing of them, as a sentence.
+    static std::string missingForRanks();
+    static Outcome runRanks(int count, const std::vector<std::string>& arguments,
+                            const std::vector<std::string>& another = {});
+
     // Expects exit code 0 and nothing on stderr.
     static Outcome runWell(const std::vector<std::string>& arguments);
 

@@ -21,6 +21,7 @@ class CheckpointOptions
     void addTo(CLI::App& app);    // must live until the options are read
     void requireWritable() const; // throws Error
     void name(NamedFiles& files) const;
+    bool given() const { return !checkpoint_.empty() || resumes(); }
     bool resumes() const { return !resume_.empty(); }
 
     // Before the first frame: goes on from --resume's file, if given, and returns the seconds rendered before. `bring`

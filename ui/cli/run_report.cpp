@@ -52,6 +52,7 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"device_tuning", gpu::toText(report.adapter.tuning)},
             {"width", report.settings.width},
             {"height", report.settings.height},
+            {"processes", report.processes},
             {"frames", report.frames},
             {"partial", report.partial},
             {"wall_seconds", report.wallSeconds},

@@ -24,6 +24,7 @@ struct RunReport {
     passes::Settings settings;
     std::vector<std::pair<std::string, std::string>> extra; // what else decides the pixels, as motionText says it
     gpu::Adapter adapter;
+    uint32_t processes = 1;       // that shared the work
     uint64_t frames = 0;          // done
     bool partial = false;         // stopped before the end
     double wallSeconds = 0;       // of rendering alone

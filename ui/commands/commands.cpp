@@ -6,7 +6,7 @@ namespace ui
 std::span<const Command> commands()
 {
     static const Command COMMANDS[] = {
-        {"render", "Renders a scene to a picture, without a window.", setUpRender},
+        {"render", "Renders a scene to a picture, without a window.", setUpRender, true},
         {"correlate", "How strongly the frames of temporal reuse depend on each other, against M_c.", setUpCorrelate,
          true},
         {"view", "Opens the window: a scene, every setting live.", setUpView},

@@ -134,7 +134,7 @@ int CorrelateCommand::run()
 
     const passes::CorrelationStore store(output);
     if (processes.index() == 0) store.open(facts, resume);
-    processes.barrier();
+    if (const int failed = processes.meet(); failed != 0) return failed;
     if (processes.index() > 0) store.open(facts, true); // where directories are not shared, each has its own
     facts.emplace_back("runs", std::to_string(runs));   // a batch is the same however many there are
     facts.emplace_back("batches", std::to_string(sizes.size()));

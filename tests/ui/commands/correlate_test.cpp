@@ -1,5 +1,4 @@
 // The correlate command, run as a person would.
-// Covers ui/ranks_mpi.cpp.
 
 #include "tests/support/trichrome.h"
 
@@ -162,26 +161,13 @@ TEST_F(Correlate, RefusesWhatItCannotMeasure)
     EXPECT_EQ(directory.entries(), std::vector<std::string>{"file"}); // nothing was begun
 }
 
-// Needs trichrome-mpi, which is built where MPI is, and mpirun.
 TEST_F(Correlate, IsTheSameOnTwoRanksToTheBit)
 {
-    const std::filesystem::path mpi = std::filesystem::read_symlink("/proc/self/exe").replace_filename("trichrome-mpi");
-    const std::filesystem::path mpirun = "/usr/bin/mpirun";
-    if (!std::filesystem::exists(mpi) || !std::filesystem::exists(mpirun))
-        GTEST_SKIP() << "SKIPPED, SEVERAL RANKS NOT TESTED: there is no trichrome-mpi or no mpirun (Debian packages "
-                        "libopenmpi-dev, openmpi-bin)";
+    if (const std::string missing = missingForRanks(); !missing.empty()) GTEST_SKIP() << missing;
     const std::string alone = directory / "alone", two = directory / "two";
-    const std::vector<std::string> more = {"--batch", "4", "--device", "llvmpipe"};
-    ASSERT_EQ(run(small(alone, more)).exitCode, 0);
-    std::vector<std::string> words = {"--allow-run-as-root", "--oversubscribe", "-n", "2", mpi.string()};
-    for (const std::string& word : small(two, more)) words.push_back(word);
-    const Outcome outcome = runProgram(mpirun, {.arguments = words});
+    ASSERT_EQ(run(small(alone, {"--batch", "4"})).exitCode, 0);
+    const Outcome outcome = runRanks(2, small(two, {"--batch", "4"}));
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(readFile(two + "/correlate.csv"), readFile(alone + "/correlate.csv"));
     EXPECT_NE(readFile(two + "/index.html").find("mpirun -n 2"), std::string::npos);
-
-    words = {"--allow-run-as-root", "--oversubscribe", "-n", "2", mpi.string(), "info", "--scenes"};
-    const Outcome refused = runProgram(mpirun, {.arguments = words});
-    EXPECT_EQ(refused.exitCode, 2) << refused.err;
-    EXPECT_NE(refused.err.find("Only correlate"), std::string::npos) << refused.err;
 }

@@ -78,19 +78,54 @@ TEST_F(Sequences, AreTheFramesThatOneRenderWouldEndWith)
     EXPECT_EQ(pixels("still.exr"), pixels("end.exr")); // what it sees shines alike in every frame
 }
 
+// --restart: chains of two frames, each what it is without the others, and other than without a restart.
+TEST_F(Sequences, RestartAsIfEachChainWereRenderedAlone)
+{
+    const auto flags = [&](const std::string& name, const std::string& range, std::vector<std::string> more) {
+        more.insert(more.end(), {"--sequence", range, "--fps", "2", "--warm-up", "1"});
+        std::vector<std::string> words = command(name + "%d.exr", more);
+        words[1] = "flags";
+        runWell(words);
+    };
+    std::vector<std::string> method = {"--method", "restir-pt", "--shift", "replay", "--spatial", "0"};
+    flags("whole", "1:5", method);
+    method.insert(method.end(), {"--restart", "2"});
+    flags("restarting", "1:6", method);
+    flags("chain", "3:5", method);
+    EXPECT_EQ(pixels("whole2.exr"), pixels("restarting2.exr"));
+    for (const std::string frame : {"3.exr", "4.exr"}) {
+        EXPECT_EQ(pixels("chain" + frame), pixels("restarting" + frame)) << frame;
+        EXPECT_NE(pixels("whole" + frame), pixels("restarting" + frame)) << frame;
+    }
+
+    // What has no history needs no warm-up, and every frame is a chain.
+    flags("whole", "1:3", {"--method", "pt"});
+    flags("chain", "2:3", {"--method", "pt"});
+    EXPECT_EQ(pixels("chain2.exr"), pixels("whole2.exr"));
+    EXPECT_FALSE(std::filesystem::exists(directory / "whole0.exr"));
+}
+
 TEST_F(Sequences, GoOnFromACheckpointToTheSameBits)
 {
     const std::string checkpoint = directory / "x.ckpt";
     const std::vector<std::string> play = {"--fps", "8", "--method", "rgb-restir", "--warm-up", "1"};
-    const auto with = [&](std::vector<std::string> words) {
-        words.insert(words.end(), play.begin(), play.end());
-        return words;
-    };
-    runWell(command("whole%d.exr", with({"--sequence", "1:6"})));
-    runWell(command("part%d.exr", with({"--sequence", "1:3", "--checkpoint", checkpoint})));
-    runWell(command("part%d.exr", with({"--sequence", "1:6", "--resume", checkpoint})));
-    for (int frame = 1; frame < 6; ++frame)
-        EXPECT_EQ(pixels("whole" + std::to_string(frame) + ".exr"), pixels("part" + std::to_string(frame) + ".exr"));
+    using Words = std::vector<std::string>;
+    // Within a chain, and into the next one.
+    for (const Words& chains : {Words{}, Words{"--restart", "3", "--shift", "replay", "--spatial", "0"}}) {
+        const auto with = [&](std::vector<std::string> words) {
+            words.insert(words.end(), play.begin(), play.end());
+            words.insert(words.end(), chains.begin(), chains.end());
+            return words;
+        };
+        runWell(command("whole%d.exr", with({"--sequence", "1:6"})));
+        runWell(command("part%d.exr", with({"--sequence", "1:3", "--checkpoint", checkpoint})));
+        runWell(command("part%d.exr", with({"--sequence", "1:6", "--resume", checkpoint})));
+        for (const std::string frame : {"1.exr", "2.exr", "3.exr", "4.exr", "5.exr"})
+            EXPECT_EQ(pixels("whole" + frame), pixels("part" + frame)) << chains.size();
+    }
+    expectRefusal(command("%d.exr", {"--sequence", "1:6", "--fps", "8", "--method", "rgb-restir", "--warm-up", "1",
+                                     "--shift", "replay", "--spatial", "0", "--restart", "2", "--resume", checkpoint}),
+                  1, "its restart is \"3\", not \"2\"");
     expectRefusal(command("%d.exr", {"--sequence", "0:6", "--fps", "9", "--resume", checkpoint}), 1, "Cannot resume");
 }
 
@@ -106,6 +141,10 @@ TEST_F(Sequences, RefuseWhatMakesNoSense)
     refuses("%d.bmp", {"--sequence", "0:2"}, "bmp");
     refuses("%d.png", {"--sequence", "0:2", "--frames", "3"}, "--frames cannot be combined with --sequence");
     refuses("%d.png", {"--sequence", "0:2", "--average", "on"}, "--average on cannot be combined with --sequence");
+    refuses("%d.exr", {"--sequence", "0:2", "--layers", "mean"}, "--layers mean cannot be combined with --sequence");
+    refuses("%d.png", {"--sequence", "0:999999", "--method", "restir-pt", "--restart", "1", "--warm-up", "10000"},
+            "makes 10000989999 frames");
+    refuses("x.png", {"--restart", "-1"}, "--restart");
     refuses("x.png", {"--fps", "5", "--average", "on"}, "--average on cannot be combined with --fps");
     refuses("x.png", {"--fps", "5", "--animation", "off"}, "leave out one of the two");
     refuses("x.png", {"--speed", "2"}, "--fps");
