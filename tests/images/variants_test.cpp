@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
 
 #include "passes/renderer.h"
 #include "tests/support/gpu_fixture.h"
+#include "tests/support/stored_meshes.h"
 #include "tests/support/test_scenes.h"
 
 namespace support
@@ -44,6 +46,28 @@ TEST_F(Variants, WithAndWithoutUnneededFeaturesRenderTheSame)
         EXPECT_LE(different, 3u) << test.name;
     }
     EXPECT_EQ(rendered, chosen.size());
+}
+
+// Rounding differs, and with it now and then whether a ray passes an edge.
+TEST_F(Variants, MeshesStoredOnceLookAsTheirCopiesDo)
+{
+    for (const TestScene& test : testScenes()) {
+        const scene::Scene scene = test.make();
+        if (scene.instances.empty()) continue;
+        passes::Renderer stored(device(), scene, test.settings()), copied(device(), expanded(scene), test.settings());
+        std::array<glm::dvec3, 2> sums = {};
+        size_t different = 0;
+        stored.renderFrame();
+        copied.renderFrame();
+        const image::Image a = stored.read(passes::MEAN), b = copied.read(passes::MEAN);
+        for (size_t i = 0; i < a.pixels.size(); ++i) {
+            different += glm::distance(a.pixels[i], b.pixels[i]) > 1e-3f * glm::length(b.pixels[i]);
+            sums[0] += glm::dvec3(a.pixels[i]);
+            sums[1] += glm::dvec3(b.pixels[i]);
+        }
+        EXPECT_LE(different, a.pixels.size() / 50) << test.name;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(sums[0][c] / sums[1][c], 1, 2e-3) << test.name;
+    }
 }
 
 } // namespace

@@ -278,6 +278,7 @@ Scene copies()
     Scene scene = ballOf({.baseColor = COPPER, .metallic = 0.3f, .roughness = 0.4f, .normalScale = 0.6f});
     scene.materials[1].normalTexture = {.image = addBumps(scene)};
     addAttributes(scene);
+    for (glm::vec4& tangent : scene.tangents) tangent.w = -1; // seams are split: each triangle has one handedness
     addColors(scene);
     const auto place = [](glm::dvec3 to, double angle, glm::dvec3 scale) {
         const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), to), angle, glm::dvec3(0.3, 1, 0.2));
