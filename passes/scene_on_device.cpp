@@ -34,7 +34,7 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
     } else {
         const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, bvhProgress, set);
         tables = std::make_unique<scene::GpuScene>(gpu, made);
-        bvh = made.bvh.stats;
+        bvh = scene::statsOf(made);
         take(made);
     }
     tablesSeconds = secondsSince(start) - bvh.buildSeconds;
@@ -53,7 +53,7 @@ void SceneOnDevice::show(uint32_t world, const scene::Scene& posed)
 {
     const scene::SceneTables& pose = poses->at(posed);
     tables->write(device, world, pose, poses->changes());
-    bvh = pose.bvh.stats;
+    bvh = scene::statsOf(pose);
     lights = pose.lights;
 }
 

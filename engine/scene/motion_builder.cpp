@@ -79,6 +79,18 @@ void MotionBuilder::addMorphTarget(uint32_t mesh, const std::function<glm::dvec3
     vertices.values[NORMAL].clear();
 }
 
+uint32_t MotionBuilder::storeMesh(const Scene& shape, uint32_t material)
+{
+    Geometry mesh = shape;
+    for (Triangle& triangle : mesh.triangles) triangle.material = material;
+    return append(scene_.meshes, mesh);
+}
+
+void MotionBuilder::addInstance(uint32_t node, uint32_t storedMesh)
+{
+    motion_->instances.push_back({.instance = append(scene_.instances, {.mesh = storedMesh}), .node = node});
+}
+
 uint32_t MotionBuilder::addPart(uint32_t node, uint32_t mesh, uint32_t material, const glm::dmat4& nodeFromMesh)
 {
     const size_t vertices = scene_.positions.size(), triangles = scene_.triangles.size();

@@ -26,6 +26,10 @@ class MotionBuilder
 
     uint32_t addPart(uint32_t node, uint32_t mesh, uint32_t material, const glm::dmat4& nodeFromMesh = glm::dmat4(1));
 
+    // The same of a mesh that is stored once, in its own material: it moves as the node does, which is not scaled.
+    uint32_t storeMesh(const Scene& shape, uint32_t material); // its index
+    void addInstance(uint32_t node, uint32_t storedMesh);
+
     // Joints take the part along, from where they and the part are at rest.
     void bind(uint32_t part, const std::vector<uint32_t>& joints,
               const std::function<std::vector<Influence>(const glm::dvec3& position)>& influences);

@@ -165,6 +165,19 @@ void requireRoom(const TableSizes& sizes, uint64_t environmentRows, uint32_t wor
 
 } // namespace
 
+BvhStats statsOf(const SceneTables& tables)
+{
+    BvhStats all = tables.bvh.stats;
+    const BvhStats& meshes = tables.meshes.stats;
+    all.nodes += meshes.nodes;
+    all.triangleRecords += meshes.triangleRecords;
+    all.skippedTriangles += meshes.skippedTriangles;
+    all.bytes += meshes.bytes;
+    all.buildSeconds += meshes.buildSeconds;
+    all.depth = std::max(all.depth, meshes.depth);
+    return all;
+}
+
 TableSizes sizesOf(const SceneTables& tables)
 {
     return {.nodes = uint32_t(tables.bvh.nodes.size()),
@@ -173,7 +186,7 @@ TableSizes sizesOf(const SceneTables& tables)
             .sceneData = uint32_t(tables.sceneData.size()),
             .placeNodes = uint32_t(tables.places.nodes.size()),
             .placeRecords = uint32_t(tables.places.records.size()),
-            .depth = std::max(tables.bvh.stats.depth, tables.meshes.stats.depth),
+            .depth = statsOf(tables).depth,
             .meshNodes = uint32_t(tables.meshes.nodes.size()),
             .meshRecords = uint32_t(tables.meshes.triangles.size()),
             .meshAttributes = uint32_t(tables.meshes.attributes.size())};

@@ -69,6 +69,9 @@ struct TableSizes {
 
 TableSizes sizesOf(const SceneTables& tables);
 
+// Of all trees but that over instances; the cost is that of what lies in the world.
+BvhStats statsOf(const SceneTables& tables);
+
 // While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData and places.
 struct TableChanges {
     MovingBvh::Changes tree;

@@ -32,19 +32,22 @@ double median(std::vector<double> values)
     return values.empty() ? 0 : values[values.size() / 2];
 }
 
-// The hall with a hundred turning bodies, a tenth of what one sees.
-scene::Scene hallWithBodies()
+// The hall with a hundred turning bodies, a tenth of what one sees. Copied or stored once.
+scene::Scene hallWithBodies(bool storedOnce)
 {
     scene::Scene scene = scene::makeHall();
     const uint32_t paint = scene::addMaterial(scene, scene::glossy("body", {0.7f, 0.6f, 0.3f}, 0.4f));
     scene::MotionBuilder builder(scene, PERIOD);
     scene::Scene shape;
     scene::addSphere(shape, scene::addMaterial(shape, {}), {0.15f, 0, 0}, 0.25f, 1);
-    const uint32_t mesh = builder.addMesh(shape);
+    const uint32_t mesh = storedOnce ? builder.storeMesh(shape, paint) : builder.addMesh(shape);
     for (int i = 0; i < 100; ++i) {
         const glm::dvec3 place(double(i % 10) - 4.5, 0.6 + 0.25 * (i % 7), 1.2 * (i / 10) - 6.0);
         const uint32_t node = builder.addNode({.translation = place});
-        builder.addPart(node, mesh, paint);
+        if (storedOnce)
+            builder.addInstance(node, mesh);
+        else
+            builder.addPart(node, mesh, paint);
         builder.turn(node, {0, 1, 0}, 1 + i % 3);
     }
     builder.finish();
@@ -116,7 +119,7 @@ double millisecondsOf(const passes::RenderStats& stats) // of a frame
     return sum;
 }
 
-void frameTime(gpu::Device& device, passes::Method method, const char* name, const Options& options)
+passes::Settings settingsOf(passes::Method method, const Options& options)
 {
     passes::Settings settings;
     const size_t times = options.size.find('x');
@@ -124,7 +127,40 @@ void frameTime(gpu::Device& device, passes::Method method, const char* name, con
     settings.height = uint32_t(std::stoul(options.size.substr(times + 1)));
     settings.method = method;
     settings.average = false;
-    scene::Scene scene = hallWithBodies();
+    return settings;
+}
+
+// The hall as it is, and with all but its lamps stored once, in one place.
+void twoLevels(gpu::Device& device, const Options& options)
+{
+    const passes::Settings settings = settingsOf(passes::Method::Pt, options);
+    const scene::Scene flat = scene::makeHall();
+    scene::Scene stored = flat;
+    const auto shines = [&](const scene::Triangle& t) { return flat.materials[t.material].emission != glm::vec3(0); };
+    std::erase_if(stored.triangles, [&](const scene::Triangle& t) { return !shines(t); });
+    stored.meshes.emplace_back(flat);
+    std::erase_if(stored.meshes[0].triangles, shines);
+    stored.instances.push_back({});
+    passes::Renderer one(device, flat, settings), two(device, stored, settings);
+    std::vector<double> ratios;
+    for (uint32_t round = 0; round <= options.rounds; ++round) {
+        std::vector<double> raysPerMillisecond;
+        for (passes::Renderer* renderer : {&one, &two}) {
+            renderer->reset();
+            for (uint32_t frame = 0; frame < options.frames; ++frame) renderer->renderFrame();
+            const passes::RenderStats stats = renderer->stats();
+            raysPerMillisecond.push_back(double(passes::sumOf(stats.rays)) / millisecondsOf(stats));
+        }
+        if (round > 0) ratios.push_back(raysPerMillisecond[1] / raysPerMillisecond[0]); // warm by then
+    }
+    fmt::print("hall through two levels: {:.2f} of the rays a second through one (median of {} rounds)\n",
+               median(ratios), ratios.size());
+}
+
+void frameTime(gpu::Device& device, passes::Method method, const char* name, bool storedOnce, const Options& options)
+{
+    const passes::Settings settings = settingsOf(method, options);
+    scene::Scene scene = hallWithBodies(storedOnce);
     const passes::Sequence moves = play(scene);
     const passes::Sequence orbit = passes::cameraOrbit(scene.cameras[0], 0.3), rests;
     struct Case {
@@ -165,10 +201,13 @@ void frameTime(gpu::Device& device, passes::Method method, const char* name, con
 int bench(const Options& options)
 {
     gpu::Device device = gpu::Device::create({.adapter = options.device});
-    hostTime(device, "a hundred bodies in hall", hallWithBodies(), options);
+    hostTime(device, "a hundred bodies in hall", hallWithBodies(false), options);
+    hostTime(device, "a hundred bodies in hall, stored once", hallWithBodies(true), options);
     hostTime(device, "a skinned mesh of 10^5 triangles in hall", skinnedBanner(), options);
-    frameTime(device, passes::Method::RestirPt, "restir-pt", options);
-    frameTime(device, passes::Method::RgbRestir, "rgb-restir", options);
+    twoLevels(device, options);
+    frameTime(device, passes::Method::RestirPt, "restir-pt", false, options);
+    frameTime(device, passes::Method::RestirPt, "restir-pt, stored once,", true, options);
+    frameTime(device, passes::Method::RgbRestir, "rgb-restir", false, options);
     return 0;
 }
 

@@ -139,6 +139,7 @@ Json motionJson(const scene::Motion& motion)
     for (const scene::Mesh& mesh : motion.meshes) targets += mesh.vertices.targets.size();
     return {{"animations", animations},
             {"rigid_parts", rigid},
+            {"instances", motion.instances.size()},
             {"deforming_parts", motion.parts.size() - rigid},
             {"triangles", triangles},
             {"nodes", motion.nodes.size()},
@@ -181,8 +182,23 @@ Json playingJson(scene::Scene world, uint64_t maxTableBytes)
     return {{"pose_seconds", posed},
             {"tables_seconds", all - posed},
             {"upload_bytes", bytes(rows(changes.tree.nodes) + rows(changes.tree.triangles) + rows(changes.attributes) +
-                                   tables.sceneData.size())},
-            {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.triangles + most.attributes + most.sceneData)}};
+                                   tables.sceneData.size() + tables.places.nodes.size() +
+                                   tables.places.records.size())},
+            {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.placeNodes + most.triangles + most.placeRecords +
+                                   most.attributes + most.sceneData)}};
+}
+
+// Meshes that are stored once, and what copies of them would be. Null: there are none.
+Json instancesJson(const scene::Scene& world)
+{
+    if (world.instances.empty()) return nullptr;
+    uint64_t stored = 0, placed = 0;
+    for (const scene::Geometry& mesh : world.meshes) stored += mesh.triangles.size();
+    for (const scene::Instance& instance : world.instances) placed += world.meshes[instance.mesh].triangles.size();
+    return {{"count", world.instances.size()},
+            {"meshes", world.meshes.size()},
+            {"triangles_stored", stored},
+            {"triangles_placed", placed}};
 }
 
 Json sceneJson(const SceneSource& source, const scene::Scene& world, const passes::RenderStats& stats,
@@ -192,11 +208,15 @@ Json sceneJson(const SceneSource& source, const scene::Scene& world, const passe
     for (const auto& [name, value] : source.toText()) pose[name] = value;
     Json cameras = Json::array();
     for (const scene::Camera& camera : world.cameras) cameras.push_back(camera.name);
-    const double triangles = double(std::max<size_t>(world.triangles.size(), 1));
+    const Json instances = instancesJson(world);
+    const uint64_t stored =
+        world.triangles.size() + (instances.is_null() ? 0 : instances["triangles_stored"].get<uint64_t>());
+    const double triangles = double(std::max<uint64_t>(stored, 1));
     return {{"scene", source.name},
             {"pose", pose},
             {"triangles", world.triangles.size()},
             {"vertices", world.positions.size()},
+            {"instances", instances},
             {"materials", world.materials.size()},
             {"images", world.images.size()},
             {"cameras", cameras},
@@ -238,7 +258,7 @@ void printMotion(const Json& motion)
                                                : "moves " + moves);
     }
     std::string text;
-    for (const char* what : {"rigid_parts", "deforming_parts", "triangles", "nodes", "skins", "joints", "morph_targets",
+    for (const char* what : {"rigid_parts", "instances", "deforming_parts", "triangles", "nodes", "skins", "joints", "morph_targets",
                              "lights", "cameras", "materials"}) {
         std::string words = what;
         std::ranges::replace(words, '_', ' ');
@@ -254,6 +274,10 @@ void printScene(const Json& scene, const passes::Settings& settings)
     fmt::print("Scene \"{}\": {} triangles, {} vertices, {} materials, {} images\n", scene["scene"].get<std::string>(),
                scene["triangles"].get<uint64_t>(), scene["vertices"].get<uint64_t>(),
                scene["materials"].get<uint64_t>(), scene["images"].get<uint64_t>());
+    if (const Json& instances = scene["instances"]; !instances.is_null())
+        fmt::print("Stored once: {} meshes of {} triangles, in {} places; copies would be {} triangles\n",
+                   instances["meshes"].get<uint64_t>(), instances["triangles_stored"].get<uint64_t>(),
+                   instances["count"].get<uint64_t>(), instances["triangles_placed"].get<uint64_t>());
     std::string pose;
     for (const auto& [name, value] : scene["pose"].items())
         pose += fmt::format("{}{} {}", pose.empty() ? "" : ", ", name, value.get<std::string>());
