@@ -55,7 +55,13 @@ struct WideTree {
     uint32_t levels = 0;
 };
 
+using Corners = std::array<glm::vec3, 3>;
+Corners cornersOf(const BvhInput& input, uint32_t triangle);
 Box boxOf(const BvhInput& input, const TrianglePair& pair);
+
+// Embree's tree over pairs of triangles, or over boxes. Spatial splits name a pair several times. Throws Error.
+BinaryTree buildBinaryTree(const BvhInput& input, std::span<const TrianglePair> pairs, bool spatialSplits);
+BinaryTree buildBinaryTree(std::span<const Box> boxes);
 
 // Puts triangles together whose common box is smaller than both of theirs: half the records, three quarters of the
 // nodes, and a test of both has less to do than two. `usable`: those to be in the tree; each is in one pair.

@@ -180,16 +180,15 @@ class StoredMeshes
         uint32_t instance = 0; // Scene::instances
         glm::dmat4 nodeFromMesh = glm::dmat4(1);
     };
-    std::optional<Placed> place(Scene& scene, int mesh, const glm::dmat4& worldFromNode,
-                                const glm::dmat4& nodeFromFile)
+    std::optional<Placed> place(Scene& scene, int mesh, const glm::dmat4& worldFromNode, const glm::dmat4& nodeFromFile)
     {
         const auto [found, isNew] = meshes_.try_emplace(mesh);
         if (isNew) found->second = read(scene, mesh);
         const Stored& stored = found->second;
         if (stored.mesh == NONE) return {};
         const Placed placed{.instance = static_cast<uint32_t>(scene.instances.size()),
-                            .nodeFromMesh = glm::scale(glm::translate(nodeFromFile, stored.middle),
-                                                       glm::dvec3(stored.size))};
+                            .nodeFromMesh =
+                                glm::scale(glm::translate(nodeFromFile, stored.middle), glm::dvec3(stored.size))};
         scene.instances.push_back({.mesh = stored.mesh, .worldFromMesh = worldFromNode * placed.nodeFromMesh});
         return placed;
     }
@@ -274,8 +273,7 @@ MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& s
             if (suits) {
                 const auto placed = stored.place(scene, node.mesh, tree.worldFromNode[nodeIndex], instance);
                 if (placed && moves(nodeIndex))
-                    plan.motion->instances.push_back(
-                        {placed->instance, plan.nodeOf[nodeIndex], placed->nodeFromMesh});
+                    plan.motion->instances.push_back({placed->instance, plan.nodeOf[nodeIndex], placed->nodeFromMesh});
             }
             for (size_t i = 0; i < mesh.primitives.size(); ++i) {
                 const tinygltf::Primitive& primitive = mesh.primitives[i];

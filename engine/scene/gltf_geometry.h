@@ -10,9 +10,9 @@
 namespace scene::gltf
 {
 
-// Also plans what moves, and adds its parts. Fills origin, vertices, triangles, meshes and instances of `scene`; Triangle::material counts
-// scene.materials, whose last is the default. Throws Error: indices out of range, more geometry than fits, coordinates
-// too far apart for float32.
+// Also plans what moves, and adds its parts. Fills origin, vertices, triangles, meshes and instances of `scene`;
+// Triangle::material counts scene.materials, whose last is the default. Throws Error: indices out of range, more
+// geometry than fits, coordinates too far apart for float32.
 MotionPlan readGeometry(const Document& document, const NodeTree& tree, Scene& scene, Instancing instancing,
                         Warnings& warnings, const std::function<void(double)>& progress);
 

@@ -148,8 +148,8 @@ StoredOnce::StoredOnce(const Document& document, const NodeTree& tree, MeshPartR
             morphs |= !primitive.targets.empty();
         }
         const bool worth = on ? triangles > 0 : triangles >= FEW_TRIANGLES;
-        chosen_[m] = (places[m] > 1 || (on && moving[m] > 0)) && worth && !morphs &&
-                     !emits(document, meshes[m], materials);
+        chosen_[m] =
+            (places[m] > 1 || (on && moving[m] > 0)) && worth && !morphs && !emits(document, meshes[m], materials);
         if (chosen_[m]) copies += static_cast<double>(places[m] - 1) * static_cast<double>(triangles);
     }
     if (!on && copies < static_cast<double>(MANY_COPIES)) chosen_.assign(meshes.size(), false);

@@ -108,7 +108,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options)
     Scene scene;
     scene.name = file.stem().string();
     scene.materials = std::move(document.materials);
-    gltf::MotionPlan plan = 
+    gltf::MotionPlan plan =
         gltf::readGeometry(document, tree, scene, options.instancing, warnings, report("Building geometry"));
     const std::vector<uint32_t> materialOf = keepUsedMaterials(scene);
     scene.files = document.files;

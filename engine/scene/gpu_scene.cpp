@@ -60,14 +60,15 @@ GpuScene::GpuScene(gpu::Device& device, const SceneTables& tables, const TableSi
 {
     writeRows(device, sceneData_, tables.environment, 0);
     const MeshTables& meshes = tables.meshes;
-    writeRows(device, nodes_,
-              movedNodes(meshes.nodes, first_.node / shared::BVH_NODE_STRIDE, first_.record / shared::BVH_RECORD_STRIDE),
-              first_.node);
+    writeRows(
+        device, nodes_,
+        movedNodes(meshes.nodes, first_.node / shared::BVH_NODE_STRIDE, first_.record / shared::BVH_RECORD_STRIDE),
+        first_.node);
     writeRows(device, triangles_, meshes.triangles, first_.record);
     writeRows(device, attributes_, meshes.attributes, first_.attribute);
-    for (const std::vector<glm::uvec4>* rows : {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes,
-                                                &tables.texels, &tables.environment, &tables.sceneData, &meshes.nodes,
-                                                &meshes.triangles, &meshes.attributes, &tables.places.records})
+    for (const std::vector<glm::uvec4>* rows :
+         {&tables.bvh.nodes, &tables.bvh.triangles, &tables.attributes, &tables.texels, &tables.environment,
+          &tables.sceneData, &meshes.nodes, &meshes.triangles, &meshes.attributes, &tables.places.records})
         contents_ = fingerprint(std::as_bytes(std::span(*rows)), contents_);
     contents_ = fingerprint(std::as_bytes(std::span(&tables.uniform, 1)), contents_);
 }
@@ -107,7 +108,8 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     uniform = pose.uniform;
     uniform.rootNode = node / shared::BVH_NODE_STRIDE;
     uniform.attributeOffset = world * room_.attributes;
-    for (uint32_t* offset : {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset, &uniform.instanceOffset})
+    for (uint32_t* offset :
+         {&uniform.materialOffset, &uniform.lightOffset, &uniform.punctualOffset, &uniform.instanceOffset})
         *offset += data;
     uniform.instanceRoot = (node + room_.nodes) / shared::BVH_NODE_STRIDE;
 
@@ -131,10 +133,10 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     eachRange(changes.attributes, pose.attributes, [&](const RowRange& range) {
         writeRows(device, attributes_, rowsOf(pose.attributes, range), uniform.attributeOffset + range.first);
     });
-    writeRows(device, nodes_,
-              movedNodes(pose.places.nodes, uniform.instanceRoot,
-                         (record + room_.triangles) / shared::BVH_RECORD_STRIDE),
-              node + room_.nodes);
+    writeRows(
+        device, nodes_,
+        movedNodes(pose.places.nodes, uniform.instanceRoot, (record + room_.triangles) / shared::BVH_RECORD_STRIDE),
+        node + room_.nodes);
     std::vector<glm::uvec4> records = pose.places.records;
     for (size_t i = 3; i < records.size(); i += shared::BVH_RECORD_STRIDE)
         records[i].x += first_.node / shared::BVH_NODE_STRIDE;

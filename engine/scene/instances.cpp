@@ -141,9 +141,7 @@ MeshTables makeMeshTables(const Scene& scene, uint32_t attributeRows, uint64_t m
         tables.meshes.push_back({.rootNode = uint32_t(tables.nodes.size() / shared::BVH_NODE_STRIDE),
                                  .attributeRow = uint32_t(tables.attributes.size()),
                                  .box = boxOf(mesh)});
-        append(tables, buildBvh({.positions = mesh.positions,
-                                 .triangles = mesh.triangles,
-                                 .needsAlphaTest = tests},
+        append(tables, buildBvh({.positions = mesh.positions, .triangles = mesh.triangles, .needsAlphaTest = tests},
                                 maxTableBytes));
         const size_t first = tables.attributes.size();
         tables.attributes.resize(first + mesh.triangles.size() * attributeRows);

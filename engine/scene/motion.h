@@ -98,9 +98,9 @@ std::vector<uint32_t> chooseAnimations(const Scene& scene, const std::string& ch
 bool contested(const Motion& motion, std::span<const uint32_t> animations);
 
 // The flat scene as these animations (indices; none: at rest) have it at `seconds`. It depends on nothing else: what
-// moves is written anew, whatever the scene's pose was. Scene::origin, the counts of vertices, triangles, instances, lights,
-// cameras and materials and their order are those of rest. Without Scene::motion nothing changes. Throws Error, and
-// leaves the pose unfinished, where something is too far away or, unless at rest, not finite.
+// moves is written anew, whatever the scene's pose was. Scene::origin, the counts of vertices, triangles, instances,
+// lights, cameras and materials and their order are those of rest. Without Scene::motion nothing changes. Throws Error,
+// and leaves the pose unfinished, where something is too far away or, unless at rest, not finite.
 void pose(Scene& scene, std::span<const uint32_t> animations, double seconds);
 
 } // namespace scene

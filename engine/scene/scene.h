@@ -1,6 +1,7 @@
 #pragma once
 // A scene as plain data, one flat world with transforms applied, but for meshes that are stored once and stand in many
-// places. Loaders and generators fill it, Bvh and GpuScene read it. Units: metres, radians, radiance W/(sr m^2) per channel (linear Rec. 709 primaries).
+// places. Loaders and generators fill it, Bvh and GpuScene read it. Units: metres, radians, radiance W/(sr m^2) per
+// channel (linear Rec. 709 primaries).
 
 #include <array>
 #include <cstdint>

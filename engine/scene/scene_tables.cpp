@@ -156,8 +156,9 @@ void requireRoom(const TableSizes& sizes, uint64_t environmentRows, uint32_t wor
 {
     const uint64_t nodes = worlds * (uint64_t{sizes.nodes} + sizes.placeNodes) + sizes.meshNodes;
     requireFits("materials, lights and instances", environmentRows + worlds * uint64_t{sizes.sceneData}, maxTableBytes);
-    requireFits("trees", nodes, std::min(maxTableBytes, uint64_t{shared::BVH_MAX_NODES} * shared::BVH_NODE_STRIDE *
-                                                            sizeof(glm::uvec4)));
+    requireFits(
+        "trees", nodes,
+        std::min(maxTableBytes, uint64_t{shared::BVH_MAX_NODES} * shared::BVH_NODE_STRIDE * sizeof(glm::uvec4)));
     requireFits("triangles and instances",
                 worlds * (uint64_t{sizes.triangles} + sizes.placeRecords) + sizes.meshRecords, maxTableBytes);
     requireFits("triangles", worlds * uint64_t{sizes.attributes} + sizes.meshAttributes, maxTableBytes);

@@ -63,7 +63,7 @@ SceneTables makeSceneTables(const Scene& scene, uint64_t maxTableBytes,
 struct TableSizes {
     uint32_t nodes = 0, triangles = 0, attributes = 0, sceneData = 0;
     uint32_t placeNodes = 0, placeRecords = 0;
-    uint32_t depth = 0;                                       // of any tree but that over instances
+    uint32_t depth = 0;                                          // of any tree but that over instances
     uint32_t meshNodes = 0, meshRecords = 0, meshAttributes = 0; // which all poses share
 };
 
@@ -72,7 +72,8 @@ TableSizes sizesOf(const SceneTables& tables);
 // Of all trees but that over instances; the cost is that of what lies in the world.
 BvhStats statsOf(const SceneTables& tables);
 
-// While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData and places.
+// While the tree's version stays, tables differ from pose to pose in these rows alone, and in those of SceneData and
+// places.
 struct TableChanges {
     MovingBvh::Changes tree;
     std::vector<RowRange> attributes;
@@ -90,7 +91,8 @@ class MovingTables
     MovingTables& operator=(const MovingTables&) = delete;
     ~MovingTables();
 
-    // Of what pose() has made of the scene; until the next call. Texels, environment and meshes are those of rest in all poses.
+    // Of what pose() has made of the scene; until the next call. Texels, environment and meshes are those of rest in
+    // all poses.
     const SceneTables& at(const Scene& posed);
     const SceneTables& last() const; // of the last pose; first, of rest
     void forgetShared();             // texels and meshes: once they are on the device

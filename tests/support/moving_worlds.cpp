@@ -266,12 +266,25 @@ void hide(scene::Scene& scene, size_t firstTriangle, size_t endTriangle)
 std::vector<MovingWorld> movingWorlds()
 {
     return {
-        {"BallRolls", ballRolls},          {"BallJumps", ballJumps},     {"BallParks", ballParks},
-        {"BallVanishes", ballVanishes},    {"BallGrows", ballGrows},     {"WallStretches", wallStretches},
-        {"BallMirrored", ballMirrored},    {"BallWobbles", ballWobbles}, {"CopiesTurn", copiesTurn}, {"LampMoves", lampMoves},
-        {"LampChanges", lampChanges},      {"CeilingLit", ceilingLit},   {"LightsWander", lightsWander, 2},
-        {"PaintDries", paintDries},        {"MirrorMoves", mirrorMoves}, {"GlassMoves", glassMoves, 5},
-        {"PanesSlide", panesSlide, 2},     {"BumpsMove", bumpsMove, 2},  {"OrthographicBall", orthographicBall, 2},
+        {"BallRolls", ballRolls},
+        {"BallJumps", ballJumps},
+        {"BallParks", ballParks},
+        {"BallVanishes", ballVanishes},
+        {"BallGrows", ballGrows},
+        {"WallStretches", wallStretches},
+        {"BallMirrored", ballMirrored},
+        {"BallWobbles", ballWobbles},
+        {"CopiesTurn", copiesTurn},
+        {"LampMoves", lampMoves},
+        {"LampChanges", lampChanges},
+        {"CeilingLit", ceilingLit},
+        {"LightsWander", lightsWander, 2},
+        {"PaintDries", paintDries},
+        {"MirrorMoves", mirrorMoves},
+        {"GlassMoves", glassMoves, 5},
+        {"PanesSlide", panesSlide, 2},
+        {"BumpsMove", bumpsMove, 2},
+        {"OrthographicBall", orthographicBall, 2},
         {"RoomRebuilds", roomRebuilds, 8},
     };
 }

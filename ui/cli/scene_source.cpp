@@ -91,7 +91,7 @@ CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::stri
            "--instances", [&source](const std::string& word) { source.instancing = instancingOf(word).value(); },
            "Meshes that stand in several places (shared meshes, EXT_mesh_gpu_instancing) are stored once, with a tree "
            "of their own: where copies would be more than a million triangles (auto), wherever they keep their shape, "
-           "do not emit and rest (on), or never (off). Less memory, slower rays, the same picture but for rounding.")
+           "do not emit and rest (on), or never (off). Less memory, slower rays, the same light.")
         ->option_text("auto|on|off (auto)")
         ->check([](const std::string& word) {
             return instancingOf(word) ? std::string() : fmt::format("\"{}\" is none of auto, on and off.", word);

@@ -36,8 +36,8 @@ std::vector<uint32_t> chosenAnimations(const scene::Scene& scene, const SceneSou
 
 constexpr const char* SCENE_DOC = "A .gltf or .glb file, or a built-in scene (info --scenes lists them).";
 
-// SCENE, --asset-root, --instances, --time and --animation; `source` must live until the options are read. The option that is
-// returned is SCENE.
+// SCENE, --asset-root, --instances, --time and --animation; `source` must live until the options are read. The option
+// that is returned is SCENE.
 CLI::Option* addSceneOptions(CLI::App& app, SceneSource& source, const std::string& doc);
 
 // In its pose, with the environment that the settings ask for. Its warnings go to stderr, one line each. Throws Error.

@@ -179,12 +179,12 @@ Json playingJson(scene::Scene world, uint64_t maxTableBytes)
         for (const scene::RowRange& range : ranges) sum += range.end - range.first;
         return sum;
     };
-    return {{"pose_seconds", posed},
-            {"tables_seconds", all - posed},
-            {"upload_bytes", bytes(rows(changes.tree.nodes) + rows(changes.tree.triangles) + rows(changes.attributes) +
-                                   tables.sceneData.size() + tables.places.nodes.size() +
-                                   tables.places.records.size())},
-            {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.placeNodes + most.triangles + most.placeRecords +
+    return {
+        {"pose_seconds", posed},
+        {"tables_seconds", all - posed},
+        {"upload_bytes", bytes(rows(changes.tree.nodes) + rows(changes.tree.triangles) + rows(changes.attributes) +
+                               tables.sceneData.size() + tables.places.nodes.size() + tables.places.records.size())},
+        {"worlds_bytes", 2 * bytes(uint64_t{most.nodes} + most.placeNodes + most.triangles + most.placeRecords +
                                    most.attributes + most.sceneData)}};
 }
 
@@ -258,8 +258,8 @@ void printMotion(const Json& motion)
                                                : "moves " + moves);
     }
     std::string text;
-    for (const char* what : {"rigid_parts", "instances", "deforming_parts", "triangles", "nodes", "skins", "joints", "morph_targets",
-                             "lights", "cameras", "materials"}) {
+    for (const char* what : {"rigid_parts", "instances", "deforming_parts", "triangles", "nodes", "skins", "joints",
+                             "morph_targets", "lights", "cameras", "materials"}) {
         std::string words = what;
         std::ranges::replace(words, '_', ' ');
         if (motion[what] != 0)

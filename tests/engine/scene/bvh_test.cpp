@@ -1,3 +1,5 @@
+// Covers engine/scene/bvh_embree.cpp.
+
 #include "engine/scene/bvh.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Tables of scenes that move against those of the same scene at rest. Covers engine/scene/material_tables.cpp,
-// engine/scene/attribute_tables.cpp.
+// Tables of scenes that move against those of the same scene at rest.
+// Covers engine/scene/material_tables.cpp, engine/scene/attribute_tables.cpp.
 
 #include "engine/scene/scene_tables.h"
 

@@ -66,8 +66,8 @@ class Instances : public Intersect
         const uint32_t root = nodesOf(all.nodes), meshRoot = root + nodesOf(t.places.nodes);
         const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
         add(all.nodes, scene::movedNodes(t.places.nodes, root, recordsOf(all.triangles)));
-        add(all.nodes, scene::movedNodes(t.meshes.nodes, meshRoot,
-                                         recordsOf(all.triangles) + recordsOf(t.places.records)));
+        add(all.nodes,
+            scene::movedNodes(t.meshes.nodes, meshRoot, recordsOf(all.triangles) + recordsOf(t.places.records)));
         std::vector<glm::uvec4> records = t.places.records;
         for (size_t i = 3; i < records.size(); i += shared::BVH_RECORD_STRIDE) records[i].x += meshRoot;
         add(all.triangles, records);
@@ -103,9 +103,9 @@ class Instances : public Intersect
             met += isHit;
             const uint32_t triangle = hits[i].isHit() ? expandedIndex(scene, hits[i].triangle()) : 0;
             placed += hits[i].isHit() && triangle >= scene.triangles.size();
-            const bool same = hits[i].isHit() == isHit && hits[i].occluded() == isHit &&
-                              (!isHit || (triangle == expected.hit.primID &&
-                                          std::abs(hits[i].t - expected.ray.tfar) <= tolerance));
+            const bool same =
+                hits[i].isHit() == isHit && hits[i].occluded() == isHit &&
+                (!isHit || (triangle == expected.hit.primID && std::abs(hits[i].t - expected.ray.tfar) <= tolerance));
             wrong += !same;
         }
         EXPECT_GT(met, rays.size() / 4);
