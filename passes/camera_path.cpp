@@ -68,8 +68,9 @@ Keyframe keyframeOf(const Json& json, const scene::Camera& base, const glm::dvec
         if (!json.contains(name)) throw Error("\"{}\" is missing.", name);
 
     const Json& frame = json["frame"];
-    if (!frame.is_number_unsigned() || frame.get<uint64_t>() > MAX_KEYFRAME)
-        throw Error("\"frame\" must be a whole number from 0 to {}, not {}.", MAX_KEYFRAME, shown(jsonText(frame)));
+    if (!frame.is_number_integer() || std::abs(frame.get<double>()) > MAX_KEYFRAME)
+        throw Error("\"frame\" must be a whole number from -{0} to {0}, not {1}.", MAX_KEYFRAME,
+                    shown(jsonText(frame)));
     double yfov = base.orthographic ? glm::half_pi<double>() : base.yfov;
     if (json.contains("yfov")) {
         const Json& degrees = json["yfov"];
@@ -164,8 +165,8 @@ CameraAt cameraPath(const Json& path, const scene::Camera& base, const glm::dvec
         return cameraOf(base, poseAt(keyframes, double(frame)), frame);
     };
     // Every camera is made once now: errors come before the work, not in the middle of it.
-    const auto last = uint64_t(keyframes.back().frame);
-    for (auto frame = uint64_t(keyframes.front().frame); frame <= last; ++frame) cameraAt(frame);
+    const double last = std::max(keyframes.back().frame, 0.0);
+    for (double frame = std::max(keyframes.front().frame, 0.0); frame <= last; ++frame) cameraAt(uint64_t(frame));
     return cameraAt;
 }
 

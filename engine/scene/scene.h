@@ -103,6 +103,7 @@ struct Camera {
     glm::dvec3 up = {0, 1, 0};
     glm::dvec3 forward = {0, 0, -1};
     glm::dvec3 target = {0, 0, -1}; // what an orbit turns around, relative to Scene::origin
+    bool operator==(const Camera&) const = default;
 };
 
 // Equirectangular radiance, row 0 is +y (up), column 0 starts at azimuth 0; empty when width is 0.

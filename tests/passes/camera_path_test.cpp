@@ -102,6 +102,18 @@ TEST(CameraPath, PassesThroughItsKeyframesInWorldCoordinates)
     for (uint64_t frame = 0; frame <= 31; ++frame) expectFrame(at(frame));
 }
 
+TEST(CameraPath, MayHaveBegunBeforeFrame0AndIsTheSameToTheBit)
+{
+    const glm::dvec3 origin(0.1, 0.2, 0.3);
+    const CameraAt whole = passes::cameraPath(threeKeys(), baseCamera(), origin);
+    Json later = threeKeys();
+    for (Json& key : later["keyframes"]) key["frame"] = key["frame"].get<int64_t>() - 13;
+    const CameraAt rest = passes::cameraPath(later, baseCamera(), origin);
+    for (uint64_t frame = 0; frame <= 20; ++frame) EXPECT_TRUE(rest(frame) == whole(frame + 13)) << frame;
+    for (Json& key : later["keyframes"]) key["frame"] = key["frame"].get<int64_t>() - 50;
+    EXPECT_TRUE(passes::cameraPath(later, baseCamera(), origin)(0) == whole(30));
+}
+
 TEST(CameraPath, HoldsUntilItsFirstKeyframe)
 {
     const CameraAt at = passes::cameraPath(
@@ -146,7 +158,11 @@ TEST(CameraPath, RefusesWithASentenceThatNamesTheKeyframe)
     expect(keys(good + R"(, {"frame": 4, "position": [0, "x", 1], "target": [0, 0, 0]})"), "reading keyframe 1");
     expect(keys(R"({"frame": 0, "position": [0, 1e300, 1], "target": [0, 0, 0]})"),
            "\"position\" must be three numbers");
-    expect(keys(R"({"frame": -1, "position": [0, 0, 1], "target": [0, 0, 0]})"), "\"frame\" must be a whole number");
+    expect(keys(R"({"frame": 0.5, "position": [0, 0, 1], "target": [0, 0, 0]})"), "\"frame\" must be a whole number");
+    expect(keys(R"({"frame": -1000001, "position": [0, 0, 1], "target": [0, 0, 0]})"),
+           "\"frame\" must be a whole number");
+    expect(keys(R"({"frame": 18446744073709551615, "position": [0, 0, 1], "target": [0, 0, 0]})"),
+           "\"frame\" must be a whole number");
     expect(keys(R"({"frame": 1e9, "position": [0, 0, 1], "target": [0, 0, 0]})"), "\"frame\" must be a whole number");
     expect(keys(good + "," + good), "Frame 3 does not come after");
     expect(keys(R"({"frame": 0, "position": [0, 0, 1], "target": [0, 0, 0], "yfov": 180})"),

@@ -17,6 +17,7 @@ namespace
 struct ViewCommand {
     WindowOptions window{.order = {.scene = {.name = "hall"}}};
     Play play;
+    std::string path;
     SettingsOptions settings;
 
     int run()
@@ -27,9 +28,14 @@ struct ViewCommand {
             window.order.play = play;
             window.order.playing = true;
         }
+        if (!path.empty()) {
+            window.order.path = loadKeys(path);
+            window.order.playing = true;
+        }
         NamedFiles files;
         files.writes("--report", window.report);
         files.reads("--reference", window.reference);
+        files.reads("--camera-path", path);
         settings.name(files, window.order.settings);
         files.reads("SCENE", window.order.scene.name);
         if (!window.report.empty()) requireWritable(window.report);
@@ -50,6 +56,11 @@ Action setUpView(CLI::App& app)
     app.add_option("--report", command->window.report,
                    "Keeps writing what the window shows, for scripts: settings, frames, camera, errors, messages.")
         ->option_text("FILE.json");
+    app.add_option("--camera-path", command->path,
+                   "Begins by moving the camera as render --camera-path does, a keyframe's frame being one that is "
+                   "rendered; T stops it. The window records such files (M).")
+        ->option_text("FILE")
+        ->group("Camera motion");
     command->play.addTo(app, "Begins by playing the scene's animations (those of --animation), from --time on: each "
                              "rendered frame shows it 1/FPS seconds later. 0: it is held still.");
     command->window.device.addTo(app);

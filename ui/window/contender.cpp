@@ -1,7 +1,6 @@
 #include "ui/window/contender.h"
 
 #include "engine/base/clock.h"
-#include "passes/camera_path.h"
 
 #include <algorithm>
 #include <iterator>
@@ -28,6 +27,11 @@ std::vector<std::pair<std::string, std::string>> poseText(const Shot& shot)
     return text;
 }
 
+bool followsPath(const Order& order)
+{
+    return order.playing && order.path && !order.pose;
+}
+
 passes::Settings settingsOf(const Order& order, Side side)
 {
     const passes::Settings& world = order.settings;
@@ -43,7 +47,8 @@ passes::Settings settingsOf(const Order& order, Side side)
 passes::StageList stagesFor(const Order& order, Side side, const passes::Renderer& renderer)
 {
     const passes::Settings settings = settingsOf(order, side);
-    passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, order.moving, order.playing);
+    const bool cameraMoves = order.moving || followsPath(order), sceneMoves = order.playing && renderer.scene().moves();
+    passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, cameraMoves, sceneMoves);
     const passes::Variant variant = stages.front().second;
     const bool resamples = settings.method != passes::Method::Pt;
     if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);
@@ -63,7 +68,10 @@ Contender::Contender(std::unique_ptr<passes::Renderer> renderer, const scene::Sc
 void Contender::follow(const Order& order, const scene::Scene& scene)
 {
     const passes::Settings next = settingsOf(order, side_), now = renderer_->settings();
-    const bool cameraChanged = order.pose != followed_.pose || next.camera != now.camera;
+    const auto pathOf = [](const Order& one) { return followsPath(one) ? one.path : nullptr; };
+    const bool cameraChanged =
+        order.pose != followed_.pose || next.camera != now.camera || pathOf(order) != pathOf(followed_);
+    if (cameraChanged) cameraAt_ = {};
     const bool settingsChanged = passes::changeBetween(now, next) > passes::Change::Nothing;
     if (next != now) {
         inspector_.reset(); // its stage is over buffers that apply() may replace
@@ -104,13 +112,15 @@ void Contender::startOver()
 void Contender::place(const Order& order, const scene::Scene& scene)
 {
     const scene::Camera& base = scene.cameras[passes::chooseCamera(scene, order.settings.camera)];
-    camera_ = order.pose ? cameraOf(*order.pose, base, scene.origin) : base;
+    if (followsPath(order) && !cameraAt_) cameraAt_ = passes::cameraPath(*order.path, base, scene.origin);
+    camera_ = order.pose ? cameraOf(*order.pose, base, scene.origin) : followsPath(order) ? cameraAt_(frame_) : base;
     renderer_->setCamera(camera_);
 }
 
-void Contender::show(const scene::Scene& posed, double seconds)
+void Contender::show(const scene::Scene& posed, std::optional<double> seconds, uint64_t frame)
 {
-    renderer_->setScene(posed, seconds);
+    if (seconds) renderer_->setScene(posed, *seconds);
+    frame_ = frame;
     place(followed_, posed);
 }
 
@@ -118,7 +128,7 @@ void Contender::render(bool once)
 {
     const auto start = Clock::now();
     const uint64_t before = frames();
-    if (before == 0) firstSeconds_ = renderer_->sceneSeconds();
+    if (before == 0) firstSeconds_ = renderer_->sceneSeconds(), firstFrame_ = frame_;
     do renderer_->renderFrame(), renderer_->wait();
     while (!once && secondsSince(start) < PUBLISH_SECONDS);
     const double seconds = secondsSince(start);
@@ -139,6 +149,7 @@ ShotPointer Contender::shot(const Order& order)
     shot->camera = camera_;
     shot->sceneSeconds = renderer_->sceneSeconds();
     shot->firstSeconds = firstSeconds_;
+    shot->firstFrame = firstFrame_;
     shot->run = run_;
     shot->frames = frames();
     shot->seconds = seconds_;

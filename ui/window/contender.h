@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "passes/camera_path.h"
 #include "passes/inspector.h"
 #include "ui/window/order.h"
 
@@ -24,8 +25,9 @@ class Contender
     void follow(const Order& order, const scene::Scene& scene);
     bool runs(const Order& order) const; // what the order wants of this side
     void recompile();                    // throws Error: a shader that does not compile
-    // From the next frame on: the scene in another pose, and the camera where that has it. Reuse goes on.
-    void show(const scene::Scene& posed, double seconds);
+    // From the next frame on: a frame of the timeline, that is, the scene (if it moves) in another pose, and the camera
+    // where that or its path has it. Reuse goes on.
+    void show(const scene::Scene& posed, std::optional<double> seconds, uint64_t frame);
     void startOver(); // from the first frame again
 
     // Renders for a sixtieth of a second; `once`: one frame. Throws Error: the device is lost.
@@ -44,7 +46,9 @@ class Contender
     std::unique_ptr<passes::Inspector> inspector_;
     Side side_;
     Order followed_;
-    std::optional<double> firstSeconds_; // of the scene, in the first frame
+    std::optional<double> firstSeconds_;  // of the scene, in the first frame
+    uint64_t frame_ = 0, firstFrame_ = 0; // of the timeline: the next one's, the first one's
+    passes::CameraAt cameraAt_;           // the order's path; empty: not needed so far
     scene::Camera camera_;
     uint64_t run_ = 0, raysBefore_ = 0;
     double seconds_ = 0, frameMilliseconds_ = 0, raysPerSecond_ = 0;

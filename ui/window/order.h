@@ -12,6 +12,7 @@
 #include "passes/inspector.h"
 #include "ui/cli/motion_options.h"
 #include "ui/cli/scene_source.h"
+#include "ui/window/camera_keys.h"
 #include "ui/window/pose.h"
 
 namespace ui
@@ -43,9 +44,12 @@ struct Order {
     passes::Settings settings; // of A
     std::optional<passes::Settings> rival; // of B; what says which picture (size, camera, environment) is A's
     std::optional<Pose> pose;              // empty: the camera that the settings name
+    CameraKeys path;                       // that the camera follows while it plays, where there is no `pose`
     bool moving = false;                   // the camera: single frames at a part of the resolution, no film
-    bool playing = false;                  // the scene: single frames, each of its own time, no film
+    bool playing = false;                  // scene and path: single frames, each of its own time, no film
     Play play = {.fps = 30};
+    uint64_t frame = 0;  // of the timeline, at which it rests or begins to play
+    uint64_t plays = 0;  // how often it has begun to play
     bool paused = false; // no frames at all
     Inspect inspect;
     StudyOrder studies;
@@ -53,6 +57,8 @@ struct Order {
     uint64_t steps = 0;    // how many single frames were asked for while paused
     bool operator==(const Order&) const = default;
 };
+
+bool followsPath(const Order& order);
 
 // As they are to run: with A's world, and with a part of the resolution while the camera moves.
 passes::Settings settingsOf(const Order& order, Side side);
@@ -77,6 +83,7 @@ struct Shot {
     scene::Camera camera; // that sees it, in the scene's coordinates
     std::optional<double> sceneSeconds; // that it shows; none: the scene at rest
     std::optional<double> firstSeconds; // that the first frame of its film has shown
+    uint64_t firstFrame = 0;            // of the timeline, which that was
     uint64_t run = 0;                   // grows whenever a film starts
     uint64_t frames = 0;
     double seconds = 0;  // of rendering, since the film started

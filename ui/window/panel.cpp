@@ -3,6 +3,7 @@
 #include "passes/variant.h"
 #include "ui/cli/presets.h"
 #include "ui/window/compare_room.h"
+#include "ui/window/path_room.h"
 #include "ui/window/pixel_room.h"
 
 #include <cinttypes>
@@ -171,6 +172,7 @@ void drawPanel(WindowState& state)
     if (!state.message.empty()) sentence(AMBER, state.message);
     drawFiles(state);
     drawRun(state);
+    drawPath(state);
     ImGui::Separator();
 
     // The three that this window is for come first; the rest in the list's own order. Frames and seconds say when
@@ -230,8 +232,10 @@ void drawHelp(WindowState& state)
                                "X              the next false colors\n"
                                "I              inspect the pixel under the mouse, and its paths\n"
                                "\n"
-                               "T              play the scene's animations, stop\n"
+                               "T              play the scene's animations and the camera path, stop\n"
                                ", .            one frame back, on\n"
+                               "M              this view becomes a keyframe of the camera path\n"
+                               "F11            prepare a film; its render line goes to the clipboard\n"
                                "\n"
                                "Space          pause, go on\n"
                                "N              one frame\n"

@@ -41,11 +41,18 @@ glm::dvec3 turned(const glm::dvec3& direction, double yaw, double pitch)
 
 Pose poseOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin)
 {
+    Pose pose = viewOf(camera, sceneOrigin);
+    if (std::abs(camera.forward.y) < std::sin(MAX_PITCH)) pose.up = {0, 1, 0};
+    return pose;
+}
+
+Pose viewOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin)
+{
     const double distance = glm::length(camera.target - camera.position);
     const glm::dvec3 position = camera.position + sceneOrigin;
     return {.position = position,
             .target = position + camera.forward * (distance > 0 ? distance : 1),
-            .up = std::abs(camera.forward.y) < std::sin(MAX_PITCH) ? glm::dvec3(0, 1, 0) : camera.up,
+            .up = camera.up,
             .yfov = camera.orthographic ? 45 : glm::degrees(camera.yfov)};
 }
 

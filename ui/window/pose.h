@@ -19,7 +19,8 @@ struct Pose {
     bool operator==(const Pose&) const = default;
 };
 
-Pose poseOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin);
+Pose poseOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin); // upright, as hands turn it
+Pose viewOf(const scene::Camera& camera, const glm::dvec3& sceneOrigin); // with the tilt that it has
 
 // As a keyframe at frame 0, and as a path: {"keyframes": [this one]}.
 nlohmann::ordered_json toJson(const Pose& pose);

@@ -209,6 +209,7 @@ void RenderThread::load(const Order& order)
     sides_[A] = std::make_unique<Contender>(std::move(renderer), *world, order, A);
     scene_ = std::move(world);
     playback_ = playback;
+    first_ = shown_ = order.frame;
     compiler_.learn(passes::stagesOf(sides_[A]->renderer().scene(), {&settings, 1}));
     SceneFacts facts{.name = order.scene.name, .origin = scene_->origin, .warnings = scene_->warnings};
     if (scene_->motion)
@@ -222,50 +223,60 @@ void RenderThread::load(const Order& order)
 void RenderThread::pose(const Order& order)
 {
     const bool same = order.scene.time == running_.scene.time && order.playing == running_.playing &&
-                      (!order.playing || order.play == running_.play);
-    if (!moves() || same) return;
-    const passes::Playback playback = playbackOf(order, playback_.animations);
-    bring(playback, 0);
+                      (!order.playing || (order.play == running_.play && order.plays == running_.plays));
+    if (same) return;
+    begin(playbackOf(order, playback_.animations), order.frame);
+}
+
+// Frame `first` of the timeline is the first one of both sides, and shows what `playback` starts with. Throws Error,
+// and leaves all as it was: the scene has no pose at that time.
+void RenderThread::begin(const passes::Playback& playback, uint64_t first)
+{
+    bring(playback, 0, first);
     playback_ = playback;
+    first_ = first;
     for (const std::unique_ptr<Contender>& side : sides_)
         if (side) side->startOver();
 }
 
 // Throws Error, and leaves the scene as it was: it has no pose at that time.
-void RenderThread::bring(const passes::Playback& playback, uint64_t frame)
+void RenderThread::bring(const passes::Playback& playback, uint64_t frame, uint64_t first)
 {
-    const double before = sides_[A]->renderer().sceneSeconds().value();
-    const double seconds = playback.secondsAt(int64_t(frame), *scene_->motion);
-    if (seconds == before) return;
+    const std::optional<double> before = sides_[A]->renderer().sceneSeconds();
+    const std::optional<double> seconds =
+        moves() ? playback.secondsAt(int64_t(frame), *scene_->motion) : std::optional<double>();
     try {
-        scene::pose(*scene_, playback.animations, seconds);
+        if (seconds != before) scene::pose(*scene_, playback.animations, *seconds);
     } catch (const Error&) {
-        scene::pose(*scene_, playback.animations, before);
+        scene::pose(*scene_, playback.animations, *before);
         throw;
     }
+    shown_ = first + frame;
     for (const std::unique_ptr<Contender>& side : sides_)
-        if (side) side->show(*scene_, seconds);
+        if (side) side->show(*scene_, seconds, shown_);
 }
 
-// While it plays the next frame is of the next time, and both sides show it. When one of them starts over so does the
-// other, there: frame f of both shows playback_.secondsAt(f), which `render` repeats.
+// While it plays the next frame is the next one of the timeline, and both sides show it. When one of them starts over
+// so does the other, there: frame f of both shows playback_.secondsAt(f), seen from where the path is at first_ + f,
+// which `render` repeats.
 void RenderThread::advance(const Order& order)
 {
-    if (!order.playing || !moves()) return;
-    const double shown = sides_[A]->renderer().sceneSeconds().value();
+    if (!order.playing) return;
+    const std::optional<double> shown = sides_[A]->renderer().sceneSeconds();
     if (sides_[A]->frames() == 0 || (sides_[B] && sides_[B]->frames() == 0)) {
-        playback_.start = shown;
-        for (const std::unique_ptr<Contender>& side : sides_)
-            if (side) side->startOver();
+        passes::Playback here = playback_;
+        here.start = shown.value_or(0);
+        begin(here, shown_);
         return;
     }
     if (order.paused && order.steps <= running_.steps) return;
     try {
-        bring(playback_, sides_[A]->frames());
+        bring(playback_, sides_[A]->frames(), first_);
     } catch (const Error&) {
         const std::lock_guard lock(mutex_);
         good_.playing = false;
         good_.scene.time = shown;
+        good_.frame = shown_;
         throw;
     }
 }

@@ -45,7 +45,8 @@ class RenderThread
     void load(const Order& order);
     bool sameWorld(const Order& order) const;
     void pose(const Order& order);
-    void bring(const passes::Playback& playback, uint64_t frame);
+    void begin(const passes::Playback& playback, uint64_t first);
+    void bring(const passes::Playback& playback, uint64_t frame, uint64_t first);
     void advance(const Order& order);
     bool moves() const { return sides_[A]->renderer().scene().moves(); }
     void tune(const Order& order, Side side);
@@ -81,6 +82,8 @@ class RenderThread
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<scene::Scene> scene_;
     passes::Playback playback_; // of a scene that moves, since the sides have last started over
+    uint64_t first_ = 0;        // frame of the timeline that they showed then
+    uint64_t shown_ = 0;        // and now
     std::unique_ptr<Contender> sides_[SIDES];
     Studies studies_; // of the sides' scene and device
     Order running_;

@@ -48,13 +48,49 @@ double lengthOf(const std::vector<AnimationFacts>& all, const SceneSource& scene
     return length;
 }
 
+bool somethingPlays(const WindowState& state)
+{
+    return playable(state) || (state.order.path && state.sceneIsThere());
+}
+
+// Of the last frame that was shown since it has begun to play; null: none so far, or it does not play.
+const Shot* playedShot(const WindowState& state)
+{
+    const Shot* shot = state.pictures.sides[A].get();
+    const Order& order = state.order;
+    const bool plays = order.playing && shot && shot->order.playing && shot->order.scene == order.scene &&
+                       shot->order.plays == order.plays && shot->frames > 0;
+    return plays ? shot : nullptr;
+}
+
 // What the picture shows while it plays, else what is ordered.
 double secondsNow(const WindowState& state)
 {
-    const ShotPointer& shot = state.pictures.sides[A];
+    const Shot* shot = playedShot(state);
+    return shot && shot->sceneSeconds ? *shot->sceneSeconds : state.order.scene.time.value_or(0);
+}
+
+double stepOf(const Play& play)
+{
+    return play.speed / play.fps;
+}
+
+double secondsOf(const WindowState& state, uint64_t frame)
+{
     const Order& order = state.order;
-    const bool plays = order.playing && shot && shot->order.playing && shot->order.scene == order.scene;
-    return plays && shot->sceneSeconds ? *shot->sceneSeconds : order.scene.time.value_or(0);
+    return passes::playedAt(startOfScene(state) + double(frame) * stepOf(order.play),
+                            lengthOf(state.facts->animations, order.scene), order.play.loop);
+}
+
+// The first frame that shows the scene so, or nearly.
+uint64_t frameOf(const WindowState& state, double seconds)
+{
+    const Order& order = state.order;
+    const double step = stepOf(order.play), length = lengthOf(state.facts->animations, order.scene);
+    if (step == 0) return order.frame;
+    double way = (seconds - startOfScene(state)) / step;
+    if (way < 0 && order.play.loop) way += length / std::abs(step);
+    return uint64_t(std::clamp(std::round(way), 0.0, double(passes::MAX_KEYFRAME)));
 }
 
 void goTo(WindowState& state, double seconds)
@@ -65,6 +101,30 @@ void goTo(WindowState& state, double seconds)
     const bool allFit = std::ranges::all_of(all, [](const AnimationFacts& one) { return one.fault.empty(); });
     if (scene.animation.empty() && !allFit) scene.animation = wordOf(all, size_t(fit - all.begin()));
     scene.time = seconds;
+    state.order.frame = frameOf(state, seconds);
+}
+
+// The camera stays.
+void setFrame(WindowState& state, uint64_t frame)
+{
+    if (sceneMoves(state)) goTo(state, secondsOf(state, frame));
+    state.order.frame = frame;
+}
+
+// Playing gives the camera to the path. Stopped, it stays where the path or hands have it.
+void playPath(WindowState& state, bool on)
+{
+    Order& order = state.order;
+    const uint64_t frame = frameNow(state);
+    if (on) {
+        if (playable(state) && order.scene.atRest()) goTo(state, 0);
+        setFrame(state, frame + 1 < framesOfAll(state) ? frame : 0);
+        order.pose.reset();
+    } else {
+        const std::optional<Pose> held = order.pose;
+        goToFrame(state, frame);
+        if (held) order.pose = held;
+    }
 }
 
 bool atTheEnd(const WindowState& state, double seconds)
@@ -72,6 +132,28 @@ bool atTheEnd(const WindowState& state, double seconds)
     const Play& play = state.order.play;
     const double end = play.speed < 0 ? 0 : lengthOf(state.facts->animations, state.order.scene);
     return !play.loop && play.speed != 0 && seconds == end;
+}
+
+void drawFrames(WindowState& state)
+{
+    constexpr double BEYOND = 2; // seconds, where the next keyframe may be
+    const uint64_t zero = 0, now = frameNow(state), all = framesOfAll(state);
+    const uint64_t most = std::max(all + uint64_t(BEYOND * state.order.play.fps), now);
+    uint64_t frame = now;
+    std::string text = fmt::format("frame {}", now);
+    if (all > 0) text += fmt::format(" of {}", all - 1);
+    if (sceneMoves(state)) text += fmt::format(", {:.3f} s", secondsNow(state));
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderScalar("##frame", ImGuiDataType_U64, &frame, &zero, &most, text.c_str())) {
+        frame = std::min<uint64_t>(frame, passes::MAX_KEYFRAME);
+        if (state.order.playing)
+            setFrame(state, frame), ++state.order.plays;
+        else
+            goToFrame(state, frame);
+    }
+    remember(state.places, "frame");
+    explain("The frame that is shown. Drag to go along the camera path, which plays on from there; Ctrl+click to type "
+            "one.");
 }
 
 void drawSlider(WindowState& state, double length)
@@ -122,7 +204,7 @@ void drawChoice(WindowState& state, const std::vector<AnimationFacts>& all)
     ImGui::EndCombo();
 }
 
-void drawPace(WindowState& state)
+void drawSpeed(WindowState& state)
 {
     Play& play = state.order.play;
     const float width = ImGui::GetFontSize() * 5;
@@ -142,45 +224,115 @@ void drawPace(WindowState& state)
     remember(state.places, "speed");
     explain("1: as the file says; negative: backwards.");
     ImGui::SameLine();
+}
+
+void drawPace(WindowState& state)
+{
+    Play& play = state.order.play;
+    const Play before = play;
+    const uint64_t frame = frameNow(state);
+    if (playable(state)) drawSpeed(state);
     checkbox(state.places, "loop", "loop", play.loop, "Begins again after the last key; else it stops there.");
+    if (play != before && state.order.path) setFrame(state, frame); // it is of another time now
 }
 
 } // namespace
 
 float timelineHeight(const WindowState& state)
 {
-    if (state.hidden || !playable(state)) return 0;
+    if (state.hidden || !somethingPlays(state)) return 0;
     const ImGuiStyle& style = ImGui::GetStyle();
     return 2 * ImGui::GetFrameHeight() + style.ItemSpacing.y + 2 * style.WindowPadding.y;
 }
 
+bool sceneMoves(const WindowState& state)
+{
+    return playable(state) && !state.order.scene.atRest();
+}
+
+double startOfScene(const WindowState& state)
+{
+    const Play& play = state.order.play;
+    const bool fromTheEnd = play.speed < 0 && !play.loop && state.start == 0;
+    return fromTheEnd ? lengthOf(state.facts->animations, state.order.scene) : state.start;
+}
+
+uint64_t frameNow(const WindowState& state)
+{
+    const Order& order = state.order;
+    if (!order.path && sceneMoves(state)) return frameOf(state, secondsNow(state));
+    const Shot* shot = playedShot(state);
+    return shot ? shot->firstFrame + shot->frames - 1 : order.frame;
+}
+
+void goToFrame(WindowState& state, uint64_t frame)
+{
+    const ShotPointer& shot = state.pictures.sides[A];
+    state.order.playing = false;
+    setFrame(state, frame);
+    if (state.order.path && shot) state.order.pose = poseAt(state.order.path, shot->camera, frame);
+}
+
+uint64_t framesOfAll(const WindowState& state)
+{
+    const std::vector<int64_t> keys = framesOf(state.order.path);
+    if (keys.size() > 1) return uint64_t(std::max<int64_t>(keys.back(), 0)) + 1;
+    const Play& play = state.order.play;
+    if (!sceneMoves(state) || play.speed == 0) return 0;
+    const double steps = lengthOf(state.facts->animations, state.order.scene) / std::abs(stepOf(play));
+    // Where it begins again the end is the beginning.
+    return play.loop ? std::max<uint64_t>(uint64_t(std::round(steps)), 1) : uint64_t(steps) + 1;
+}
+
 void play(WindowState& state, bool on)
 {
-    if (!playable(state) || on == state.order.playing) return;
-    double seconds = secondsNow(state);
-    if (on && atTheEnd(state, seconds))
-        seconds = state.order.play.speed < 0 ? lengthOf(state.facts->animations, state.order.scene) : 0;
-    goTo(state, seconds);
-    state.order.playing = on;
-    if (on) state.order.paused = false;
+    Order& order = state.order;
+    if (!somethingPlays(state) || on == order.playing) return;
+    if (order.path) {
+        playPath(state, on);
+    } else {
+        double seconds = secondsNow(state);
+        if (on && atTheEnd(state, seconds))
+            seconds = order.play.speed < 0 ? lengthOf(state.facts->animations, order.scene) : 0;
+        goTo(state, seconds);
+    }
+    order.playing = on;
+    if (!on) return;
+    ++order.plays;
+    order.paused = false;
 }
 
 void stepScene(WindowState& state, int frames)
 {
-    const std::vector<AnimationFacts>* all = playable(state);
-    if (!all) return;
+    if (!somethingPlays(state)) return;
     const Play& play = state.order.play;
-    const double step = (play.speed != 0 ? play.speed : 1) / play.fps;
+    if (state.order.path) {
+        const int64_t frame = int64_t(frameNow(state)) + frames;
+        goToFrame(state, uint64_t(std::clamp<int64_t>(frame, 0, passes::MAX_KEYFRAME)));
+        return;
+    }
+    const double step = play.speed != 0 ? stepOf(play) : 1 / play.fps;
     const double seconds = secondsNow(state) + frames * step;
     state.order.playing = false;
-    goTo(state, passes::playedAt(seconds, lengthOf(*all, state.order.scene), play.loop));
+    goTo(state, passes::playedAt(seconds, lengthOf(state.facts->animations, state.order.scene), play.loop));
 }
 
 void stopAtTheEnd(WindowState& state)
 {
-    const ShotPointer& shot = state.pictures.sides[A];
-    if (!playable(state) || !state.order.playing || !shot || !shot->order.playing || shot->frames < 2) return;
-    if (atTheEnd(state, secondsNow(state))) play(state, false);
+    const Shot* shot = playedShot(state);
+    if (!somethingPlays(state) || !shot || shot->frames < 2) return;
+    if (!state.order.path) {
+        if (atTheEnd(state, secondsNow(state))) play(state, false);
+        return;
+    }
+    const uint64_t all = framesOfAll(state);
+    if (all == 0 || frameNow(state) + 1 < all) return;
+    if (!state.order.play.loop) {
+        goToFrame(state, all - 1);
+        return;
+    }
+    setFrame(state, 0);
+    ++state.order.plays;
 }
 
 void drawTimeline(WindowState& state)
@@ -195,23 +347,29 @@ void drawTimeline(WindowState& state)
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar);
-    drawSlider(state, lengthOf(*all, state.order.scene));
+    if (state.order.path)
+        drawFrames(state);
+    else
+        drawSlider(state, lengthOf(*all, state.order.scene));
     if (button(state.places, state.order.playing ? "Stop" : "Play", "play",
-               "Each frame shows the scene a little later (T). Stopped, it rests, and its picture gets better."))
+               "Each frame shows the scene a little later, seen from further along the camera path (T). Stopped, it "
+               "rests, and its picture gets better."))
         play(state, !state.order.playing);
     ImGui::SameLine();
     if (button(state.places, "<", "frame-back", "One frame back (comma).")) stepScene(state, -1);
     ImGui::SameLine();
     if (button(state.places, ">", "frame-on", "One frame on (period).")) stepScene(state, 1);
     ImGui::SameLine();
-    if (button(state.places, "At rest", "rest", "The scene as its nodes state it, without any animation.")) {
-        state.order.playing = false;
-        state.order.scene.time.reset();
-        state.order.scene.animation.clear();
+    if (all) {
+        if (button(state.places, "At rest", "rest", "The scene as its nodes state it, without any animation.")) {
+            state.order.playing = false;
+            state.order.scene.time.reset();
+            state.order.scene.animation.clear();
+        }
+        ImGui::SameLine();
+        drawChoice(state, *all);
+        ImGui::SameLine();
     }
-    ImGui::SameLine();
-    drawChoice(state, *all);
-    ImGui::SameLine();
     drawPace(state);
     ImGui::End();
 }

@@ -11,6 +11,7 @@
 #include "ui/window/frame.h"
 #include "ui/window/mouse.h"
 #include "ui/window/panel.h"
+#include "ui/window/path_room.h"
 #include "ui/window/pixel_room.h"
 #include "ui/window/plots.h"
 #include "ui/window/presenter.h"
@@ -52,6 +53,7 @@ class Window
                   glfwPostEmptyEvent)
     {
         state_.order = options.order;
+        if (options.order.path) state_.start = options.order.scene.time.value_or(0); // as `render` has it
         state_.scale = frame_.scale;
         glfwSetWindowUserPointer(frame_.window, this);
         glfwSetDropCallback(frame_.window, [](GLFWwindow* window, int count, const char** files) {
@@ -109,7 +111,10 @@ class Window
         } else {
             state_.order.scene = {.name = file, .assetRoot = state_.order.scene.assetRoot}; // at rest
             state_.order.playing = false;
+            state_.order.frame = 0;
+            state_.order.path.reset();
             state_.order.pose.reset();
+            state_.start = 0;
             state_.order.settings.camera.clear();
         }
     }
@@ -203,12 +208,14 @@ class Window
             return;
         }
         if (pressed(GLFW_KEY_F1)) state_.help = !state_.help;
+        if (pressed(GLFW_KEY_F11)) requests.film = true;
         if (pressed(GLFW_KEY_F12)) requests.screenshot = true;
         if (pressed(GLFW_KEY_HOME)) requests.resetView = true;
         if (pressed(GLFW_KEY_SPACE)) state_.order.paused = !state_.order.paused;
         if (pressed(GLFW_KEY_N)) state_.order.paused = true, ++state_.order.steps;
         if (pressed(GLFW_KEY_R)) ++state_.order.restarts;
         if (pressed(GLFW_KEY_T)) play(state_, !state_.order.playing);
+        if (pressed(GLFW_KEY_M)) addKeyframe(state_);
         if (pressed(GLFW_KEY_COMMA)) stepScene(state_, -1);
         if (pressed(GLFW_KEY_PERIOD)) stepScene(state_, 1);
         if (pressed(GLFW_KEY_C)) compare(state_, !state_.order.rival);
@@ -225,10 +232,35 @@ class Window
     {
         const ShotPointer& shot = state_.pictures.sides[state_.editing];
         if (!shot || shot->order.moving) return;
+        attempt([&] { giveLine("Saved", takeScreenshot(*shot)); });
+    }
+
+    void giveLine(const std::string& done, const std::string& line)
+    {
+        line_ = line;
+        glfwSetClipboardString(frame_.window, line_.c_str());
+        state_.message = fmt::format("{}; in the clipboard: {}", done, line_);
+    }
+
+    void makeFilm()
+    {
+        const ShotPointer& shot = state_.pictures.sides[state_.editing];
+        if (!shot || shot->order.scene.name != state_.order.scene.name) return;
+        const uint64_t frames = framesOfAll(state_);
+        if (frames == 0) {
+            state_.message = "Nothing moves that a film could show: play the scene's animations (T), if it has any, or "
+                             "add keyframes (M).";
+            return;
+        }
+        const std::optional<double> start = sceneMoves(state_) ? std::optional(startOfScene(state_)) : std::nullopt;
+        attempt([&] { giveLine("Ready to render", prepareFilm(*shot, state_.order, frames, start)); });
+    }
+
+    void keepPath()
+    {
+        if (!state_.order.path) return;
         attempt([&] {
-            line_ = takeScreenshot(*shot);
-            glfwSetClipboardString(frame_.window, line_.c_str());
-            state_.message = "Saved; in the clipboard: " + line_;
+            state_.message = fmt::format("Saved as {}; view --camera-path plays it.", savePath(state_.order.path));
         });
     }
 
@@ -252,6 +284,8 @@ class Window
         if (requests.converge) state_.order.studies.reference = true, state_.plots = true;
         if (requests.resetView) CameraHands::reset(state_.order);
         if (requests.screenshot) saveShot();
+        if (requests.film) makeFilm();
+        if (requests.savePath) keepPath();
     }
 
     void remember()
@@ -319,7 +353,7 @@ class Window
         const std::string before = state_.facts ? linesOf(state_.facts->warnings) : "", now = linesOf(facts->warnings);
         if (!now.empty() || state_.message == before) state_.message = now;
         state_.facts = facts;
-        if (facts->animations.empty()) state_.order.playing = false;
+        if (facts->animations.empty() && !state_.order.path) state_.order.playing = false;
         memory_.opened(std::filesystem::exists(facts->name) ? std::filesystem::absolute(facts->name).string()
                                                             : facts->name);
         state_.recent = memory_.recent;

@@ -4,6 +4,7 @@
 #include "ui/cli/run_report.h"
 #include "ui/window/false_color.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -24,6 +25,7 @@ Json reportOf(const Shot& shot)
             {"seconds", shot.seconds},
             {"moving", shot.order.moving},
             {"playing", shot.order.playing},
+            {"frame", shot.order.playing ? shot.firstFrame + std::max<uint64_t>(shot.frames, 1) - 1 : shot.order.frame},
             {"scene_seconds", shot.sceneSeconds ? Json(*shot.sceneSeconds) : Json(nullptr)},
             {"camera_moved", shot.order.pose.has_value()},
             {"paused", shot.order.paused},
@@ -80,6 +82,8 @@ Json reportOf(const WindowState& state, const ErrorMeter& meter)
         {"playing", state.order.playing},
         {"time", state.order.scene.time ? Json(*state.order.scene.time) : Json(nullptr)},
         {"moved", state.order.pose.has_value()},
+        {"frame", state.order.frame},
+        {"keyframes", framesOf(state.order.path)},
         {"pixel", state.pixel},
         {"converging", state.order.studies.reference},
         {"correlation", state.order.studies.correlation}};

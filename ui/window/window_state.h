@@ -18,7 +18,7 @@ namespace ui
 // Done by the window after the widgets, once.
 struct Requests {
     bool screenshot = false, resetView = false, freeze = false, converge = false, dropReference = false;
-    bool undo = false, redo = false;
+    bool undo = false, redo = false, film = false, savePath = false;
     std::string file; // to open, as if it had been dropped into the window
     std::string preset;
 };
@@ -35,6 +35,7 @@ struct WindowState {
     Tone tone;
     View view;
     bool help = false, plots = false, correlation = false, pixel = false, hidden = false;
+    double start = 0;    // seconds, of the scene in frame 0 of the timeline
     std::string message; // the last thing that the person should know
     std::vector<std::string> recent;
     bool canUndo = false, canRedo = false;

@@ -269,6 +269,54 @@ TEST(RenderThread, AnAnimatedCameraIsFollowedUntilItIsTaken)
     EXPECT_NEAR(away(2), 4, 1e-6);
 }
 
+// In a scene that rests; the second side joins on the way.
+TEST(RenderThread, BothSidesFollowThePathFrameByFrameUntilTheCameraIsTaken)
+{
+    lost = false;
+    ui::RenderThread thread(open, "", [] {});
+    ui::Order order = small();
+    order.path = ui::withKey(nullptr, 0, {.position = {0, 1, 5}, .target = {0, 1, 0}});
+    order.path = ui::withKey(order.path, 5000, {.position = {0.5, 1.5, 4}, .target = {0, 1, 0}});
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A) != nullptr; }));
+    const scene::Camera rest = thread.shot(ui::A)->camera;
+    const passes::CameraAt at = passes::cameraPath(*order.path, rest, thread.scene()->origin);
+    EXPECT_FALSE(rest == at(0));
+    order.playing = true;
+    order.frame = 7;
+    thread.order(order);
+    const auto frameOf = [](const ui::ShotPointer& shot) { return shot->firstFrame + shot->frames - 1; };
+    const auto expectOnTheWay = [&](ui::Side side, uint64_t first) {
+        ASSERT_TRUE(comes([&] {
+            const ui::ShotPointer shot = thread.shot(side);
+            return shot && shot->order.playing && shot->frames > 3 && shot->firstFrame >= first;
+        }));
+        const ui::ShotPointer shot = thread.shot(side);
+        EXPECT_TRUE(shot->single);
+        EXPECT_TRUE(shot->camera == at(frameOf(shot))) << frameOf(shot);
+    };
+    expectOnTheWay(ui::A, 7);
+    EXPECT_EQ(thread.shot(ui::A)->firstFrame, 7u);
+    order.rival = order.settings;
+    order.rival->seed = 1;
+    thread.order(order);
+    expectOnTheWay(ui::B, 8);
+    expectOnTheWay(ui::A, 8);
+    order.paused = true;
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A)->order.paused && thread.shot(ui::B)->order.paused; }));
+    EXPECT_EQ(frameOf(thread.shot(ui::A)), frameOf(thread.shot(ui::B)));
+
+    order.paused = false;
+    ++order.plays; // from its frame again
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A)->order == order && thread.shot(ui::A)->firstFrame == 7; }));
+    order.pose = ui::poseOf(rest, thread.scene()->origin);
+    thread.order(order);
+    ASSERT_TRUE(comes([&] { return thread.shot(ui::A)->order == order; }));
+    EXPECT_NEAR(glm::distance(thread.shot(ui::A)->camera.position, rest.position), 0, 1e-9);
+}
+
 // Each study says what is known otherwise: chains follow their law, RGB has no floor, the reference is the picture.
 TEST(RenderThread, StudiesAreMeasuredBesideThePictures)
 {

@@ -1,8 +1,6 @@
 // Scenes that move, under a person's hands.
 // Covers ui/window/timeline_room.cpp.
 
-#include "engine/image/image.h"
-#include "tests/support/program.h"
 #include "tests/support/tiny_gltf.h"
 #include "tests/ui/window/window_fixture.h"
 
@@ -25,23 +23,6 @@ class Timeline : public WindowTest
     std::string scene() const { return (file_.folder / "tiny.gltf").string(); }
 
     static bool shows(const Json& json) { return json.contains("frames") && json["frames"] > 0; } // a picture
-
-    // F12, and the line that it gives.
-    void expectTheLineGivesTheSamePixels(int number) const
-    {
-        const std::string kept = fmt::format("{}/trichrome-{}.exr", folder_, number);
-        ASSERT_TRUE(until(
-            [&](const Json& json) {
-                return json["line"].get<std::string>().find(fmt::format("trichrome-{}-again", number)) !=
-                       std::string::npos;
-            },
-            [&] { key("F12"); }));
-        std::string line = report()["line"];
-        line.replace(0, 9, TRICHROME);
-        ASSERT_EQ(shell("cd " + folder_ + " && " + line), 0) << line;
-        const image::Image again = image::read(fmt::format("{}/trichrome-{}-again.exr", folder_, number)).image;
-        EXPECT_TRUE(image::read(kept).image.pixels == again.pixels) << line;
-    }
 
     TinyGltf file_;
 };

@@ -1,6 +1,7 @@
 #include "tests/ui/window/window_fixture.h"
 
 #include "engine/base/error.h"
+#include "engine/image/image.h"
 #include "tests/support/program.h"
 
 #include <chrono>
@@ -174,6 +175,26 @@ testing::AssertionResult WindowTest::dragUntilMoved() const
                      const auto from = inPicture(0.7, 0.3), to = inPicture(0.8, 0.3);
                      dragAcross(from[0], to[0], from[1]);
                  });
+}
+
+void WindowTest::expectTheLineGivesTheSamePixels(int number) const
+{
+    const std::string kept = fmt::format("{}/trichrome-{}.exr", folder_, number);
+    ASSERT_TRUE(until(
+        [&](const Json& json) {
+            return json["line"].get<std::string>().find(fmt::format("trichrome-{}-again", number)) != std::string::npos;
+        },
+        [&] { key("F12"); }));
+    const std::string line = report()["line"];
+    ASSERT_EQ(runLine(line), 0) << line;
+    const image::Image again = image::read(fmt::format("{}/trichrome-{}-again.exr", folder_, number)).image;
+    EXPECT_TRUE(image::read(kept).image.pixels == again.pixels) << line;
+}
+
+int WindowTest::runLine(const std::string& line) const
+{
+    EXPECT_EQ(line.substr(0, 10), "trichrome ");
+    return shell("cd " + folder_ + " && " + TRICHROME + line.substr(9));
 }
 
 WindowTest::Screen WindowTest::screen() const
