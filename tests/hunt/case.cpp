@@ -1,4 +1,5 @@
 #include "tests/hunt/case.h"
+#include "tests/support/stored_meshes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -139,6 +140,7 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
     insist(settings_);
+    stores_ = kind_ != Kind::Moving && draw.chance(0.25);
     if (!wanted_.onItself) return;
     truth_ = Truth::PathTracer;
     settings_.method = Pt;
@@ -156,6 +158,7 @@ Case Session::draw(uint64_t place) const
     Case c{.number = index_ * SESSION_CASES + place, .kind = kind_, .truth = truth_, .settings = settings_};
     c.scene = drawScene(scenes_, truth_, palette_, draw);
     palette_.complete(c.scene, draw);
+    c.stores = stores_;
     scene::Camera& camera = c.scene.cameras.at(0);
     if (orthographic_) {
         camera.orthographic = true;
@@ -184,6 +187,22 @@ scene::Scene Case::sceneIn(uint32_t frame) const
     return posed(scene, moves, settings.frames - 1 - frame);
 }
 
+// Every other material that does not emit, in spaces that are turned by quarters, mirrored and halved: exactly, so that
+// neighbors still meet.
+scene::Scene Case::onTrial() const
+{
+    scene::Scene trial = moves.empty() ? scene : withMotion(scene, moves);
+    for (uint32_t m = 0; stores && m < scene.materials.size(); ++m) {
+        const bool used = std::ranges::find(trial.triangles, m, &scene::Triangle::material) != trial.triangles.end();
+        if (m % 3 == 2 || !used || scene.materials[m].emission != glm::vec3(0)) continue;
+        glm::dmat4 place(0);
+        for (uint32_t axis = 0; axis < 3; ++axis) place[int(axis)][int((axis + m) % 3)] = (m + axis) % 2 ? -0.5 : 0.5;
+        place[3][3] = 1;
+        trial = support::storedInPlace(std::move(trial), m, place);
+    }
+    return trial;
+}
+
 std::string Case::describe() const
 {
     std::string text = fmt::format("case {} ({}, against {}): {} triangles, {} lights, sky of {} rows", number,
@@ -195,6 +214,7 @@ std::string Case::describe() const
         if (mine[i] != usual[i] && mine[i].first != "average")
             text += fmt::format(" --{} {}", mine[i].first, mine[i].second);
     if (orbit != 0) text += fmt::format(" --orbit {}", orbit);
+    if (stores) text += ", meshes stored once";
     for (const Move& move : moves)
         text += fmt::format(", {} {} {}", WHAT_NAMES[size_t(move.what)], move.target, WHEN_NAMES[size_t(move.when)]);
     return text;

@@ -46,7 +46,10 @@ struct Case {
     double orbit = 0;          // degrees a frame; 0: the camera rests
     std::vector<Move> moves;   // of the scene, which is stated at rest
 
+    bool stores = false; // the trial has meshes stored once, the truth has not
+
     scene::Scene sceneIn(uint32_t frame) const; // of settings.frames
+    scene::Scene onTrial() const;               // the same world, as the trial is shown it
     std::string describe() const;
 };
 
@@ -76,7 +79,7 @@ class Session
     Truth truth_;
     Palette palette_;
     passes::Settings settings_;
-    bool orthographic_ = false, paints_ = false;
+    bool orthographic_ = false, paints_ = false, stores_ = false;
 };
 
 // One kind's scenes, with a camera; complete() does the rest.

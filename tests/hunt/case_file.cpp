@@ -298,10 +298,10 @@ Move moveOf(const Json& json)
 }
 
 // What `trichrome render` takes: the method on trial after its frames, and many frames of the path tracer. It does not
-// know of moves.
+// know of moves and of what the hunter stores once.
 std::vector<std::string> commandsOf(const std::string& name, const Case& c)
 {
-    if (!c.moves.empty()) return {fmt::format("hunt --file {}.json", name)};
+    if (!c.moves.empty() || c.stores) return {fmt::format("hunt --file {}.json", name)};
     const auto usual = passes::toText(passes::Settings{});
     const auto line = [&](passes::Settings settings, const std::string& output, double orbit) {
         std::string text = fmt::format("trichrome render {}.gltf -o {}", name, output);
@@ -345,6 +345,7 @@ void writeCase(const std::filesystem::path& stem, const Case& c, const std::stri
     json["kind"] = KIND_NAMES[size_t(c.kind)];
     json["truth"] = TRUTH_NAMES[size_t(c.truth)];
     json["orbit"] = c.orbit;
+    if (c.stores) json["stores"] = true;
     const glm::dvec3& target = c.scene.cameras.at(0).target; // which glTF does not know
     json["target"] = {target.x, target.y, target.z};
     for (const Move& move : c.moves) json["moves"].push_back(jsonOf(move));
@@ -362,6 +363,7 @@ Case readCase(const std::filesystem::path& file)
     c.kind = Kind(indexOf(KIND_NAMES, json.at("kind")));
     c.truth = Truth(indexOf(TRUTH_NAMES, json.at("truth")));
     c.orbit = json.at("orbit").get<double>();
+    c.stores = json.value("stores", false);
     passes::apply(c.settings, json.at("settings"));
     std::filesystem::path scene = file;
     c.scene = scene::loadGltf(scene.replace_extension(".gltf"), {.sky = false});

@@ -96,7 +96,8 @@ class Shrinker
         size_t unusual = 0;
         for (const Material& m : c.scene.materials) unusual += m.roughness != 1 || m.specular != 0 || m.metallic != 0;
         return c.scene.triangles.size() + c.scene.lights.size() + c.scene.environment.radiance.size() + unusual +
-               c.settings.spatial + c.settings.frames + c.settings.maxBounces + (c.orbit != 0) + c.moves.size();
+               c.settings.spatial + c.settings.frames + c.settings.maxBounces + (c.orbit != 0) + c.stores +
+               c.moves.size();
     }
 
     // Takes the change when the case still fails.
@@ -115,6 +116,7 @@ class Shrinker
     {
         const passes::Settings usual;
         if (case_.orbit != 0) attempt([](Case& c) { c.orbit = 0; });
+        if (case_.stores) attempt([](Case& c) { c.stores = false; });
         if (case_.settings.spatial > 0) attempt([](Case& c) { c.settings.spatial = 0; });
         if (case_.settings.spatial > 1) attempt([](Case& c) { c.settings.spatial = 1; });
         if (case_.settings.temporal && case_.settings.frames > 1)

@@ -89,4 +89,15 @@ scene::Scene storedOnce(scene::Scene scene, uint32_t material, const std::vector
     return scene;
 }
 
+scene::Scene storedInPlace(scene::Scene scene, uint32_t material, const glm::dmat4& place)
+{
+    scene = storedOnce(std::move(scene), material, {glm::inverse(place)});
+    scene::Scene alone;
+    alone.meshes = {scene.meshes.back()};
+    alone.instances = {{.worldFromMesh = glm::inverse(place)}};
+    scene.meshes.back() = expanded(alone);
+    scene.instances.back().worldFromMesh = place;
+    return scene;
+}
+
 } // namespace support
