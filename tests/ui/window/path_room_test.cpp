@@ -54,8 +54,8 @@ class CameraPath : public WindowTest
 // In a scene that rests: frames alone move the camera.
 TEST_F(CameraPath, IsRecordedPlaysAndBecomesAFilmOfTheSamePixels)
 {
-    view({"--method", "rgb-restir", "--spatial", "0", "--fps", "8"});
-    ASSERT_TRUE(comes(runs("method", "rgb-restir")));
+    view({"--fps", "8"});
+    ASSERT_TRUE(comes(runs("method", "pt")));
     EXPECT_FALSE(report()["places"].contains("frame"));
     ASSERT_TRUE(until(
         [](const Json& json) { return json["message"].get<std::string>().find("Nothing moves") != std::string::npos; },
@@ -96,9 +96,12 @@ TEST_F(CameraPath, IsRecordedPlaysAndBecomesAFilmOfTheSamePixels)
         ASSERT_TRUE(until([&](const Json&) { return std::filesystem::exists(file); }, [&] { click("save-path"); }));
         EXPECT_EQ(readJson(file), readJson(folder_ + "/trichrome-film-1/camera.json"));
     }
-    ASSERT_TRUE(
-        until([](const Json& json) { return json["places"].contains("keyframe.8"); }, [&] { click("keyframes"); }));
-    ASSERT_TRUE(until(asks("frame", 8), [&] { click("keyframe.8"); }));
+    ASSERT_TRUE(until(asks("frame", 8), [&] {
+        const auto open = [](const Json& json) { return json["places"].contains("keyframe.8"); };
+        if (!open(report())) click("keyframes"); // a list closes when the mouse misses it
+        ASSERT_TRUE(comes(open));
+        click("keyframe.8");
+    }));
     ASSERT_TRUE(until([](const Json& json) { return json["asked"]["keyframes"] == Json({0}); },
                       [&] { click("remove-keyframe"); }));
     ASSERT_TRUE(until([](const Json& json) { return keyframes(json) == 0; }, [&] { click("clear-path"); }));
@@ -119,14 +122,15 @@ TEST_F(CameraPath, IsOpenedAndPlaysWithTheScene)
         {"frame": 0, "position": [0.1, 0.4, 2], "target": [0.3, 0.3, 0]},
         {"frame": 40, "position": [0.9, 0.2, 2.5], "target": [0.4, 0.3, 0.1]},
         {"frame": 60, "position": [1.1, 0.7, 1.5], "target": [0.5, 0.3, 0.1]}]})");
-    view({"--camera-path", "way.json", "--time", "0.25", "--fps", "8", "--speed", "0.5", "--method", "rgb-restir"},
+    view({"--camera-path", "way.json", "--time", "0.25", "--fps", "8", "--speed", "0.5", "--method", "restir-pt",
+          "--shift", "replay", "--spatial", "0"},
          (file.folder / "tiny.gltf").string());
     ASSERT_TRUE(comes([](const Json& json) { return json["playing"] == true && json["frame"] > 1; }));
     EXPECT_EQ(report()["asked"]["keyframes"], Json({0, 40, 60}));
     stopBetween(2, 50);
     const Json shown = report();
     EXPECT_EQ(shown["scene_seconds"].get<double>(), 0.25 + shown["frame"].get<int>() * 0.0625);
-    expectTheLineGivesTheSamePixels(1);
+    screenshot(1);
     const std::string line = film();
     EXPECT_NE(line.find("--time 0.25 --fps 8 --speed 0.5 --loop on"), std::string::npos) << line;
     ASSERT_EQ(runLine(line), 0) << line;

@@ -177,18 +177,22 @@ testing::AssertionResult WindowTest::dragUntilMoved() const
                  });
 }
 
-void WindowTest::expectTheLineGivesTheSamePixels(int number) const
+std::string WindowTest::screenshot(int number) const
 {
-    const std::string kept = fmt::format("{}/trichrome-{}.exr", folder_, number);
-    ASSERT_TRUE(until(
+    EXPECT_TRUE(until(
         [&](const Json& json) {
             return json["line"].get<std::string>().find(fmt::format("trichrome-{}-again", number)) != std::string::npos;
         },
         [&] { key("F12"); }));
-    const std::string line = report()["line"];
+    return report()["line"];
+}
+
+void WindowTest::expectTheLineGivesTheSamePixels(int number) const
+{
+    const std::string line = screenshot(number);
     ASSERT_EQ(runLine(line), 0) << line;
-    const image::Image again = image::read(fmt::format("{}/trichrome-{}-again.exr", folder_, number)).image;
-    EXPECT_TRUE(image::read(kept).image.pixels == again.pixels) << line;
+    const std::string kept = fmt::format("{}/trichrome-{}", folder_, number);
+    EXPECT_TRUE(image::read(kept + ".exr").image.pixels == image::read(kept + "-again.exr").image.pixels) << line;
 }
 
 int WindowTest::runLine(const std::string& line) const

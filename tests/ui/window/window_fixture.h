@@ -46,9 +46,9 @@ class WindowTest : public testing::Test
     std::array<int, 2>
     inPicture(double x, double y) const; // on the screen; (0, 0) is the upper left corner, (1, 1) the lower right
 
-    // F12 for the `number`th time, and the line that it gives.
-    void expectTheLineGivesTheSamePixels(int number) const;
-    int runLine(const std::string& line) const; // where the window runs; the exit code
+    std::string screenshot(int number) const;               // F12 for the `number`th time: the line that it gives
+    void expectTheLineGivesTheSamePixels(int number) const; // likewise
+    int runLine(const std::string& line) const;             // where the window runs; the exit code
 
     struct Screen {
         int width = 0, height = 0;

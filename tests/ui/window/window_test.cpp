@@ -32,10 +32,13 @@ TEST_F(Window, TogglesChangeWhatRunsAndTheLineOfAScreenshotGivesTheSamePixels)
 {
     view({"--spatial", "0"});
     ASSERT_TRUE(comes(runs("method", "pt")));
-    ASSERT_TRUE(until(runs("method", "restir-pt"), [&] { click("method.1"); }));
+    ASSERT_TRUE(until(asks("method", "restir-pt"), [&] { click("method.1"); }));
+    ASSERT_TRUE(comes(runs("method", "restir-pt")));
     EXPECT_EQ(report()["variant"]["RESERVOIR_COUNT"], "1");
-    ASSERT_TRUE(until(runs("shift", "replay"), [&] { click("shift.0"); }));
-    ASSERT_TRUE(until(runs("method", "rgb-restir"), [&] { click("method.2"); }));
+    ASSERT_TRUE(until(asks("shift", "replay"), [&] { click("shift.0"); }));
+    ASSERT_TRUE(comes(runs("shift", "replay")));
+    ASSERT_TRUE(until(asks("method", "rgb-restir"), [&] { click("method.2"); }));
+    ASSERT_TRUE(comes(runs("method", "rgb-restir")));
     EXPECT_EQ(report()["variant"]["RESERVOIR_COUNT"], "3");
     const Json place = report()["places"]["max-confidence"];
     ASSERT_TRUE(until(runs("max-confidence", 1048576), [&] {
