@@ -132,8 +132,7 @@ void settle(Scene& scene, const std::vector<glm::dvec3>& positions, Motion* moti
 {
     const Extent flat = extentOf(scene, positions);
     Extent all = flat;
-    std::vector<Box> boxes;
-    for (const Geometry& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
+    const std::vector<Box> boxes = boxesOf(scene.meshes);
     for (const Instance& instance : scene.instances)
         extend(all, extentOf(boxes[instance.mesh], instance.worldFromMesh));
     if (all.lower.x <= all.upper.x) { // there is a triangle

@@ -43,7 +43,7 @@ double boundingRadius(const Scene& scene)
         for (const uint32_t v : triangle.vertices)
             squared = std::max(squared, glm::dot(scene.positions[v], scene.positions[v]));
     }
-    squared = std::max(squared, static_cast<float>(squaredRadiusOfInstances(scene)));
+    squared = std::max(squared, static_cast<float>(squaredRadiusOfInstances(scene, boxesOf(scene.meshes))));
     return squared > 0 ? std::sqrt(static_cast<double>(squared)) : 1;
 }
 

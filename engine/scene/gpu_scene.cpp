@@ -133,19 +133,22 @@ void GpuScene::write(gpu::Device& device, uint32_t world, const SceneTables& pos
     eachRange(changes.attributes, pose.attributes, [&](const RowRange& range) {
         writeRows(device, attributes_, rowsOf(pose.attributes, range), uniform.attributeOffset + range.first);
     });
-    writeRows(
-        device, nodes_,
-        movedNodes(pose.places.nodes, uniform.instanceRoot, (record + room_.triangles) / shared::BVH_RECORD_STRIDE),
-        node + room_.nodes);
-    std::vector<glm::uvec4> records = pose.places.records;
-    for (size_t i = 3; i < records.size(); i += shared::BVH_RECORD_STRIDE)
-        records[i].x += first_.node / shared::BVH_NODE_STRIDE;
-    writeRows(device, triangles_, records, record + room_.triangles);
-    std::vector<glm::uvec4> rows = pose.sceneData;
-    for (size_t i = 0; i < pose.places.rows.size(); i += shared::INSTANCE_ROWS)
-        rows[pose.uniform.instanceOffset - pose.environment.size() + i + 3].x += first_.attribute;
-    writeRows(device, sceneData_, rows, pose.environment.size() + data);
+    writeRows(device, sceneData_, pose.sceneData, pose.environment.size() + data);
+    if (!pose.places.nodes.empty()) writePlaces(device, pose.places, uniform, record + room_.triangles);
     device.queue().write(uniform_, std::as_bytes(std::span(worlds_)));
+}
+
+// Behind what lies in the world, with the rows of their meshes.
+void GpuScene::writePlaces(gpu::Device& device, PlaceTables places, const shared::SceneUniform& uniform,
+                           uint32_t firstRecord)
+{
+    writeRows(device, nodes_, movedNodes(places.nodes, uniform.instanceRoot, firstRecord / shared::BVH_RECORD_STRIDE),
+              uint64_t{uniform.instanceRoot} * shared::BVH_NODE_STRIDE);
+    for (size_t i = 3; i < places.records.size(); i += shared::BVH_RECORD_STRIDE)
+        places.records[i].x += first_.node / shared::BVH_NODE_STRIDE;
+    writeRows(device, triangles_, places.records, firstRecord);
+    for (size_t i = 3; i < places.rows.size(); i += shared::INSTANCE_ROWS) places.rows[i].x += first_.attribute;
+    writeRows(device, sceneData_, places.rows, uniform.instanceOffset);
 }
 
 gpu::BindGroup GpuScene::bind(gpu::Device& device, const gpu::ComputePipeline& pipeline) const

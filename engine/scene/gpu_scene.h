@@ -43,6 +43,8 @@ class GpuScene
   private:
     GpuScene(gpu::Device& device, const SceneTables& tables, const TableSizes& room, uint32_t worlds,
              std::shared_ptr<const gpu::Buffer> texels);
+    void writePlaces(gpu::Device& device, PlaceTables places, const shared::SceneUniform& uniform,
+                     uint32_t firstRecord);
 
     TableSizes room_; // of a world
     struct {

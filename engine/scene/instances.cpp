@@ -1,7 +1,6 @@
 #include "engine/scene/instances.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -105,10 +104,15 @@ Extent extentOf(const Box& box, const glm::dmat4& worldFromMesh)
     return {center - half, center + half};
 }
 
-double squaredRadiusOfInstances(const Scene& scene)
+std::vector<Box> boxesOf(const std::vector<Geometry>& meshes)
 {
     std::vector<Box> boxes;
-    for (const Geometry& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
+    for (const Geometry& mesh : meshes) boxes.push_back(boxOf(mesh));
+    return boxes;
+}
+
+double squaredRadiusOfInstances(const Scene& scene, std::span<const Box> boxes)
+{
     double squared = 0;
     for (const Instance& instance : scene.instances) {
         if (!instance.visible) continue;

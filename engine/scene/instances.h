@@ -3,6 +3,7 @@
 // triangle is called in its place: shaders/shared/scene.h.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -29,8 +30,10 @@ struct Extent {
 void extend(Extent& extent, const Extent& by);
 Extent extentOf(const Box& box, const glm::dmat4& worldFromMesh);
 
-// Of a sphere about the origin that holds all boxes of instances.
-double squaredRadiusOfInstances(const Scene& scene);
+std::vector<Box> boxesOf(const std::vector<Geometry>& meshes);
+
+// Of a sphere about the origin that holds all boxes of instances; `boxes` are those of the meshes.
+double squaredRadiusOfInstances(const Scene& scene, std::span<const Box> boxes);
 
 // As tables. Rows of what all poses share: trees, records and attributes of the meshes, one after the other.
 struct MeshTables {

@@ -26,7 +26,7 @@ double powerOfTwoScale(double size)
 
 double radiusOf(const Scene& scene)
 {
-    double squared = squaredRadiusOfInstances(scene);
+    double squared = squaredRadiusOfInstances(scene, boxesOf(scene.meshes));
     for (const Triangle& triangle : scene.triangles)
         for (const uint32_t vertex : triangle.vertices) {
             const glm::dvec3 p(scene.positions[vertex]);
@@ -219,6 +219,8 @@ struct MovingTables::Kept {
     std::vector<uint8_t> needsAlphaTest;
     std::vector<uint32_t> movingTriangles, movingVertices;
     double stillSquaredRadius = 0; // of the vertices that do not move
+    std::vector<Box> meshBoxes;
+    bool placesMove = false;
     std::optional<MovingBvh> bvh;
     TableSizes most;
     TableChanges changes;
@@ -258,7 +260,7 @@ void MovingTables::Kept::findWhatMoves(const Scene& scene)
 
 double MovingTables::Kept::radiusOf(const Scene& scene) const
 {
-    double squared = std::max(stillSquaredRadius, squaredRadiusOfInstances(scene));
+    double squared = std::max(stillSquaredRadius, squaredRadiusOfInstances(scene, meshBoxes));
     for (const uint32_t t : movingTriangles) {
         for (const uint32_t v : scene.triangles[t].vertices) {
             const glm::dvec3 p(scene.positions[v]);
@@ -275,6 +277,8 @@ MovingTables::MovingTables(const Scene& rest, uint64_t maxTableBytes, const std:
     CHECK(rest.motion);
     Kept& kept = *kept_;
     kept.findWhatMoves(rest);
+    kept.meshBoxes = boxesOf(rest.meshes);
+    kept.placesMove = !rest.instances.empty() && (rest.motion->animations.empty() || !rest.motion->instances.empty());
     const double radius = kept.radiusOf(rest), lengthScale = powerOfTwoScale(radius);
     kept.positions = scaled(rest.positions, lengthScale);
     kept.lights = makeLightTables(rest, kept.positions, lengthScale, radius * lengthScale, true);
@@ -325,7 +329,7 @@ const SceneTables& MovingTables::at(const Scene& posed)
     const uint32_t rows = tables.uniform.attributeRows;
     CHECK_EQ(posed.triangles.size() * rows, tables.attributes.size());
     PlaceTables places;
-    if (tables.features.HAS_INSTANCES) places = placeInstances(posed, tables.meshes, tables.lengthScale);
+    if (kept.placesMove) places = placeInstances(posed, tables.meshes, tables.lengthScale);
     if (places.nodes.size() > kept.most.placeNodes)
         throw Error("A pose of the scene needs a larger tree over its instances than it has room for.");
     const double radius = kept.radiusOf(posed);
@@ -333,7 +337,7 @@ const SceneTables& MovingTables::at(const Scene& posed)
     for (const uint32_t t : kept.movingTriangles)
         packAttributes(posed, kept.positions, kept.lights.lightOfTriangle[t], t,
                        std::span(tables.attributes).subspan(size_t{t} * rows, rows));
-    tables.places = std::move(places);
+    if (kept.placesMove) tables.places = std::move(places);
     const LightTables lights =
         makeLightTables(posed, kept.positions, tables.lengthScale, radius * tables.lengthScale, kept.lights);
     fillSceneData(tables, lights, repaint(kept.materials, posed, tables.radianceScale), radius);

@@ -1,5 +1,7 @@
 #include "engine/scene/instances.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -7,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/scene/motion.h"
+#include "engine/scene/motion_builder.h"
 #include "engine/scene/scene_tables.h"
 #include "engine/scene/shapes.h"
 #include "shaders/shared/bvh.h"
@@ -61,9 +65,9 @@ TEST(Instances, AreInTheBoxThatIsSaidOfThem)
     EXPECT_LT(glm::distance(lower, glm::dvec3(8, -1, 0)), 1e-12);
     EXPECT_LT(glm::distance(upper, glm::dvec3(12, 1, 4)), 1e-12);
     Scene scene = boxes({glm::translate(I, {3, 0, 0}), glm::translate(I, {0, 90, 0})});
-    EXPECT_NEAR(scene::squaredRadiusOfInstances(scene), 91 * 91 + 2, 1e-9);
+    EXPECT_NEAR(scene::squaredRadiusOfInstances(scene, scene::boxesOf(scene.meshes)), 91 * 91 + 2, 1e-9);
     scene.instances[1].visible = false;
-    EXPECT_NEAR(scene::squaredRadiusOfInstances(scene), 16 + 2, 1e-9);
+    EXPECT_NEAR(scene::squaredRadiusOfInstances(scene, scene::boxesOf(scene.meshes)), 16 + 2, 1e-9);
 }
 
 // The mesh is there once however many places it has; a place takes eight rows, and its share of a tree.
@@ -124,6 +128,36 @@ TEST(Instances, HaveTheirMaterialsCompiledIn)
     EXPECT_TRUE(tables.features.HAS_VERTEX_COLORS);
     EXPECT_TRUE(tables.features.HAS_INSTANCES);
     EXPECT_FALSE(scene::makeSceneTables(support::expanded(scene), ROOM).features.HAS_INSTANCES);
+}
+
+// A box that turns, beside one that rests: its place alone differs from pose to pose. Where none moves, none is made
+// anew.
+TEST(Instances, MoveByTheirPlacesAlone)
+{
+    for (const bool moves : {true, false}) {
+        Scene scene = boxes({glm::translate(I, {5, 0, 0})});
+        scene::MotionBuilder builder(scene, 8);
+        Scene shape;
+        scene::addBox(shape, scene::addMaterial(shape, {}), {-1, -1, -1}, {1, 1, 1});
+        const uint32_t node = builder.addNode({.translation = {0, 2, 0}});
+        if (moves)
+            builder.addInstance(node, builder.storeMesh(shape, 1));
+        else
+            builder.addPart(node, builder.addMesh(shape), 1);
+        builder.turn(node, {0, 1, 0}, 1);
+        builder.finish();
+        scene::MovingTables tables(scene, ROOM);
+        const scene::SceneTables rest = tables.last();
+        scene::pose(scene, std::vector<uint32_t>{0}, 1);
+        const scene::SceneTables& posed = tables.at(scene);
+        EXPECT_EQ(posed.places.records != rest.places.records, moves);
+        EXPECT_EQ(posed.places.rows != rest.places.rows, moves);
+        EXPECT_EQ(posed.attributes != rest.attributes, !moves);
+        EXPECT_EQ(posed.places.rows.size(), (moves ? 2 : 1) * size_t{shared::INSTANCE_ROWS});
+        if (!moves) continue;
+        const glm::dvec3 corner(scene.instances[1].worldFromMesh * glm::dvec4(1, 0, 0, 1));
+        EXPECT_LT(glm::distance(corner, glm::dvec3(std::sqrt(0.5), 2, -std::sqrt(0.5))), 1e-6); // an eighth of a turn
+    }
 }
 
 } // namespace
