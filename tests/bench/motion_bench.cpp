@@ -42,7 +42,8 @@ scene::Scene hallWithBodies(bool storedOnce)
     scene::addSphere(shape, scene::addMaterial(shape, {}), {0.15f, 0, 0}, 0.25f, 1);
     const uint32_t mesh = storedOnce ? builder.storeMesh(shape, paint) : builder.addMesh(shape);
     for (int i = 0; i < 100; ++i) {
-        const glm::dvec3 place(double(i % 10) - 4.5, 0.6 + 0.25 * (i % 7), 1.2 * (i / 10) - 6.0);
+        const int row = i / 10;
+        const glm::dvec3 place(double(i % 10) - 4.5, 0.6 + 0.25 * (i % 7), 1.2 * row - 6.0);
         const uint32_t node = builder.addNode({.translation = place});
         if (storedOnce)
             builder.addInstance(node, mesh);

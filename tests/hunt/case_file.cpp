@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -58,9 +60,6 @@ class Writer
         json_["scenes"] = {{{"nodes", nodes}}};
         json_["buffers"] = {
             {{"byteLength", data_.size()}, {"uri", "data:application/octet-stream;base64," + support::base64(data_)}}};
-        std::ranges::sort(extensions_);
-        const auto [first, last] = std::ranges::unique(extensions_);
-        extensions_.erase(first, last);
         if (!extensions_.empty()) json_["extensionsUsed"] = extensions_;
         return json_;
     }
@@ -125,7 +124,7 @@ class Writer
             const double angle = std::atan2(-double(use.row1.x), double(use.row0.x));
             info["extensions"]["KHR_texture_transform"] = {
                 {"offset", {use.row0.z, use.row1.z}}, {"rotation", angle}, {"scale", {s, t}}};
-            extensions_.emplace_back("KHR_texture_transform");
+            extensions_.emplace("KHR_texture_transform");
         }
         return info;
     }
@@ -181,7 +180,7 @@ class Writer
     }
     Json& extension(Json& object, const char* name)
     {
-        extensions_.emplace_back(name);
+        extensions_.emplace(name);
         return object["extensions"][name];
     }
 
@@ -226,14 +225,14 @@ class Writer
             node["extensions"]["KHR_lights_punctual"]["light"] =
                 json_["extensions"]["KHR_lights_punctual"]["lights"].size() - 1;
             json_["nodes"].push_back(node);
-            extensions_.emplace_back("KHR_lights_punctual");
+            extensions_.emplace("KHR_lights_punctual");
         }
     }
 
     const Scene& scene_;
     Json json_;
     std::vector<std::byte> data_;
-    std::vector<std::string> extensions_;
+    std::set<std::string> extensions_;
 };
 
 void write(const std::filesystem::path& file, const std::string& text)
@@ -303,7 +302,7 @@ std::vector<std::string> commandsOf(const std::string& name, const Case& c)
 {
     if (!c.moves.empty() || c.stores) return {fmt::format("hunt --file {}.json", name)};
     const auto usual = passes::toText(passes::Settings{});
-    const auto line = [&](passes::Settings settings, const std::string& output, double orbit) {
+    const auto line = [&](const passes::Settings& settings, const std::string& output, double orbit) {
         std::string text = fmt::format("trichrome render {}.gltf -o {}", name, output);
         const auto mine = passes::toText(settings);
         for (size_t i = 0; i < mine.size(); ++i)

@@ -136,7 +136,7 @@ class Shrinker
             if (same || name == "method" || name == "size" || name == "average" || name == "frames" ||
                 name == "temporal" || name == "spatial" || name == "max-bounces" || name == "seed")
                 continue;
-            attempt([&](Case& c) { passes::set(c.settings, name, word); });
+            attempt([&name = name, &word = word](Case& c) { passes::set(c.settings, name, word); });
         }
     }
 

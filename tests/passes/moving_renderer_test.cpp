@@ -276,7 +276,10 @@ TEST_F(MovingRenderer, ThatIsRefusedAPoseStaysInTheOneBefore)
     };
     using Place = std::pair<glm::vec3, float>;
     const auto grid = [&](float z) {
-        return quads([z](uint32_t i) { return Place{{float(i % 20), float(i / 20), z}, 0.5f}; });
+        return quads([z](uint32_t i) {
+            const uint32_t row = i / 20;
+            return Place{{float(i % 20), float(row), z}, 0.5f};
+        });
     };
     scene::Scene chain = quads([](uint32_t i) {
         const float s = std::pow(0.93f, float(i));

@@ -72,7 +72,10 @@ TEST_F(StoredOnce, AreMeshesOfWhichCopiesWouldBeMany)
 {
     // 2^15 places of a mesh of 64 triangles.
     std::vector<float> translations;
-    for (int i = 0; i < 32768; ++i) translations.insert(translations.end(), {float(i % 256) * 2, 0, float(i / 256)});
+    for (int i = 0; i < 32768; ++i) {
+        const int row = i / 256;
+        translations.insert(translations.end(), {float(i % 256) * 2, 0, float(row)});
+    }
     std::vector<uint32_t> indices;
     for (int i = 0; i < 64; ++i) indices.insert(indices.end(), {0, 1, 2});
     const int places = file.accessor(translations, "VEC3");

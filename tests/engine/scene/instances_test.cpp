@@ -74,7 +74,10 @@ TEST(Instances, AreInTheBoxThatIsSaidOfThem)
 TEST(Instances, TakeNoCopies)
 {
     std::vector<glm::dmat4> places;
-    for (int i = 0; i < 1000; ++i) places.push_back(glm::translate(I, {3.0 * (i % 32), 0, 3.0 * (i / 32)}));
+    for (int i = 0; i < 1000; ++i) {
+        const int row = i / 32;
+        places.push_back(glm::translate(I, {3.0 * (i % 32), 0, 3.0 * row}));
+    }
     const scene::SceneTables one = scene::makeSceneTables(boxes({I}), ROOM);
     const scene::SceneTables many = scene::makeSceneTables(boxes(places), ROOM);
     EXPECT_EQ(one.meshes.nodes, many.meshes.nodes);
@@ -114,7 +117,7 @@ TEST(Instances, OfWhichThereAreTooManyToNumberAreRefused)
 
 TEST(Instances, ThatDoNotFitTheDeviceAreRefused)
 {
-    EXPECT_THROW(scene::makeSceneTables(boxes(std::vector<glm::dmat4>(2000, I)), 64 * 1024), Error);
+    EXPECT_THROW(scene::makeSceneTables(boxes(std::vector<glm::dmat4>(2000, I)), uint64_t(64) * 1024), Error);
 }
 
 TEST(Instances, HaveTheirMaterialsCompiledIn)

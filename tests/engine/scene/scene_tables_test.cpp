@@ -4,8 +4,8 @@
 #include "engine/scene/scene_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cstring>
 #include <set>
 #include <string>
 
@@ -88,7 +88,8 @@ TEST(MovingTables, AtRestAreThoseOfTheStillScene)
             expectFits(rest, tables.most());
             EXPECT_EQ(rest.attributes, still.attributes);
             EXPECT_EQ(rest.sceneData, still.sceneData);
-            EXPECT_EQ(std::memcmp(&rest.uniform, &still.uniform, sizeof(still.uniform)), 0);
+            using Words = std::array<uint32_t, sizeof(still.uniform) / sizeof(uint32_t)>;
+            EXPECT_EQ(std::bit_cast<Words>(rest.uniform), std::bit_cast<Words>(still.uniform));
             EXPECT_EQ(rest.lights.emissiveTriangles, still.lights.emissiveTriangles);
             EXPECT_EQ(rest.lights.environments, still.lights.environments);
             const std::multiset<uint32_t> in = recorded(still.bvh), once(recorded(rest.bvh));

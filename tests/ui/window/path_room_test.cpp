@@ -102,7 +102,7 @@ TEST_F(CameraPath, IsRecordedPlaysAndBecomesAFilmOfTheSamePixels)
         ASSERT_TRUE(comes(open));
         click("keyframe.8");
     }));
-    ASSERT_TRUE(until([](const Json& json) { return json["asked"]["keyframes"] == Json({0}); },
+    ASSERT_TRUE(until([](const Json& json) { return json["asked"]["keyframes"] == Json::array({0}); },
                       [&] { click("remove-keyframe"); }));
     ASSERT_TRUE(until([](const Json& json) { return keyframes(json) == 0; }, [&] { click("clear-path"); }));
     EXPECT_TRUE(comes([](const Json& json) { return !json["places"].contains("frame"); }));
