@@ -10,6 +10,7 @@
 
 #include "engine/scene/motion.h"
 #include "engine/scene/shapes.h"
+#include "passes/estimator.h"
 #include "tests/support/gpu_fixture.h"
 #include "tests/support/gpu_pictures.h"
 #include "tests/support/moving_worlds.h"
@@ -69,8 +70,12 @@ std::vector<RestirCase> movingCases()
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 3u), {8u, 6u}, {64u, 5u}})
                         for (const char* scene : {"RoomRebuilds", "WallStretches"})
-                            cases.push_back({scene, method, shift, reuse, moves, maxConfidence, 1500, frames});
-    return cases;
+                            for (const passes::Color color : {Chosen, Weighted}) {
+                                if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
+                                cases.push_back(
+                                    {scene, method, shift, reuse, moves, maxConfidence, 1500, frames, color});
+                            }
+    return atFamilyLevel(std::move(cases));
 }
 
 class MovingAgreement : public GpuTest, public testing::WithParamInterface<RestirCase>
@@ -80,6 +85,7 @@ class MovingAgreement : public GpuTest, public testing::WithParamInterface<Resti
 TEST_P(MovingAgreement, WithThePathTracer)
 {
     const TileVerdict verdict = GetParam().verdict(device());
+    RecordProperty("verdict", verdict.summary);
     EXPECT_TRUE(verdict.passes) << verdict.summary;
 }
 

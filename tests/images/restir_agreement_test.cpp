@@ -20,6 +20,7 @@ class RestirAgreement : public GpuTest, public testing::WithParamInterface<Resti
 TEST_P(RestirAgreement, WithThePathTracer)
 {
     const TileVerdict verdict = GetParam().verdict(device());
+    RecordProperty("verdict", verdict.summary);
     EXPECT_TRUE(verdict.passes) << verdict.summary;
 }
 

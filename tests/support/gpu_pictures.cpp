@@ -18,11 +18,17 @@ void expectFinite(passes::Renderer& renderer)
 
 } // namespace
 
-PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
-                            uint32_t runs, const passes::CameraAt& cameraAt, const SceneAt& sceneAt)
+uint32_t batchesOf(uint32_t runs)
 {
-    constexpr uint32_t MOST = 256; // runs below each other in one picture: small dispatches cost more than they do
-    const uint32_t batches = (runs + MOST - 1) / MOST, batch = (runs + batches - 1) / batches;
+    constexpr uint32_t MOST = 256; // in one picture
+    return (runs + MOST - 1) / MOST;
+}
+
+PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, const passes::Settings& settings,
+                            uint32_t runs, const passes::CameraAt& cameraAt, const SceneAt& sceneAt,
+                            const Enough& enough)
+{
+    const uint32_t batches = batchesOf(runs), batch = (runs + batches - 1) / batches;
     PictureRuns result;
     passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, batch, nullptr, bool(sceneAt));
     const auto bring = [&](uint32_t frame) {
@@ -46,6 +52,7 @@ PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, cons
             result.add(one);
         }
         expectFinite(renderer);
+        if (enough && enough(result.estimates())) break;
     }
     return result.estimates();
 }

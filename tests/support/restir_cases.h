@@ -21,15 +21,19 @@ struct RestirCase {
     Reuse reuse;
     bool moves; // the camera turns by 3 degrees a frame
     uint32_t maxConfidence;
-    uint32_t runs = 200;
+    uint32_t runs = 200; // at most: fewer where fewer tell
     uint32_t frames = 5;
     passes::Color color = passes::Color::Weighted;
+    double level = 1e-3; // how often what is unbiased may seem biased
 
     std::string name() const;
     // The last frame, its mean over many runs, against the path tracer's picture from the same place.
     TileVerdict verdict(gpu::Device& device) const;
 };
 void PrintTo(const RestirCase& c, std::ostream* os);
+
+// Each at its share of a level for all of them.
+std::vector<RestirCase> atFamilyLevel(std::vector<RestirCase> cases, double level = 1e-3);
 
 // With TRICHROME_TEST_MATRIX set: the whole product, in one scene.
 std::vector<RestirCase> restirCases();

@@ -166,10 +166,11 @@ void PictureRuns::add(const image::Image& run)
     whole_.add(run);
 }
 
-TileVerdict picturesAgree(const PictureEstimates& a, const PictureEstimates& b, double margin, double relativeRounding)
+TileVerdict picturesAgree(const PictureEstimates& a, const PictureEstimates& b, double margin, double relativeRounding,
+                          const Levels& levels)
 {
-    const TileVerdict tiles = tilesAgree(a.tiles, b.tiles, 1e-3, relativeRounding);
-    const TileVerdict whole = tilesAreEquivalent(a.whole, b.whole, margin);
+    const TileVerdict tiles = tilesAgree(a.tiles, b.tiles, levels.differ, relativeRounding);
+    const TileVerdict whole = tilesAreEquivalent(a.whole, b.whole, margin, levels.equivalent);
     return {tiles.passes && whole.passes, "tiles: " + tiles.summary + "\nwhole picture: " + whole.summary};
 }
 

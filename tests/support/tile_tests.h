@@ -18,7 +18,8 @@ namespace support
 using statistics::Estimate;
 using statistics::Moments;
 
-constexpr uint32_t TILE_SIZE = 8; // pixels
+constexpr uint32_t TILE_SIZE = 8;        // pixels
+constexpr double DEVICE_ROUNDING = 5e-5; // relative: vertex colors are in half precision there
 
 // Two one-sided tests: true when |a - b| < margin is shown at the level (its negation is rejected).
 bool showsEquivalence(const statistics::Difference& difference, double margin, double level);
@@ -87,9 +88,14 @@ class PictureRuns
     TileRuns tiles_, whole_{UINT32_MAX};
 };
 
+// How often a test may be wrong: where two pictures are the same, and where they are not.
+struct Levels {
+    double differ = 1e-3;     // of tilesAgree()
+    double equivalent = 0.05; // of tilesAreEquivalent()
+};
+
 // tilesAgree(), and the means of the whole pictures are equivalent within `margin`, so that an error of it would show.
-// Rounding: the device's scene has vertex colors in half precision.
 TileVerdict picturesAgree(const PictureEstimates& a, const PictureEstimates& b, double margin = 0.01,
-                          double relativeRounding = 5e-5);
+                          double relativeRounding = DEVICE_ROUNDING, const Levels& levels = {});
 
 } // namespace support
