@@ -51,14 +51,12 @@ uint64_t sumOf(const std::map<std::string, uint64_t>& counts)
 }
 
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-                   const std::function<void(double)>& bvhProgress, scene::FeatureSet featureSet, uint32_t runs,
-                   std::shared_ptr<PipelinePool> pipelines, bool moves)
+                   const SceneOptions& options, uint32_t runs)
     : device_(device), settings_(settings), runs_(runs)
 {
     const scene::Camera& camera = scene.cameras[chooseCamera(scene, settings.camera)];
     createBuffers(); // first: a picture too large for the device is said so before a long build
-    scene_ =
-        std::make_shared<SceneOnDevice>(device, scene, camera, featureSet, bvhProgress, std::move(pipelines), moves);
+    scene_ = std::make_shared<SceneOnDevice>(device, scene, camera, options);
     setCamera(camera);
     frame_.previousCamera = frame_.camera;
     createStages();

@@ -57,15 +57,10 @@ struct RendererState {
 class Renderer
 {
   public:
-    // FeatureSet::Everything compiles all features and replays even what cannot have changed; it gives the same
-    // picture, slower: for tests and benchmarks. Independent `runs` of the picture lie below each other in what is
-    // rendered and read, width x (height * runs); the first is what a lone run with this seed gives, to the bit.
-    // `pipelines`: another renderer's on this device, of whatever scene, so that shaders both need are compiled once.
-    // `moves`: setScene() will change the scene's pose.
-    Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-             const std::function<void(double)>& bvhProgress = {},
-             scene::FeatureSet featureSet = scene::FeatureSet::Needed, uint32_t runs = 1,
-             std::shared_ptr<PipelinePool> pipelines = nullptr, bool moves = false);
+    // Independent `runs` of the picture lie below each other in what is rendered and read, width x (height * runs); the
+    // first is what a lone run with this seed gives, to the bit.
+    Renderer(gpu::Device& device, const scene::Scene& scene, const Settings& settings, const SceneOptions& options = {},
+             uint32_t runs = 1);
     // Another renderer of the sibling's scene on its device, seen by its camera, that shares the scene's memory, so
     // that methods can be compared in turns. The environment must be the sibling's. If the scene moves, it has the
     // sibling's pose until setScene() gives it another.

@@ -11,10 +11,9 @@ namespace passes
 {
 
 SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const scene::Camera& first,
-                             scene::FeatureSet set, const std::function<void(double)>& bvhProgress,
-                             std::shared_ptr<PipelinePool> pool, bool moves)
-    : device(gpu), pipelines(pool ? std::move(pool) : std::make_shared<PipelinePool>(gpu)), camera(first),
-      featureSet(set)
+                             const SceneOptions& options)
+    : device(gpu), pipelines(options.pipelines ? options.pipelines : std::make_shared<PipelinePool>(gpu)),
+      camera(first), featureSet(options.featureSet)
 {
     const auto start = Clock::now();
     const uint64_t maxTableBytes = gpu.limits().tableBytes;
@@ -24,15 +23,15 @@ SceneOnDevice::SceneOnDevice(gpu::Device& gpu, const scene::Scene& scene, const 
         lengthScale = made.lengthScale;
         radianceScale = made.radianceScale;
     };
-    if (moves) {
-        poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes, bvhProgress, set);
+    if (options.moves) {
+        poses = std::make_unique<scene::MovingTables>(scene, maxTableBytes, options.bvhProgress, featureSet);
         tables = std::make_unique<scene::GpuScene>(gpu, *poses);
         poses->forgetShared();
         take(poses->last());
         motion = scene.motion->fingerprint();
         show(0, scene);
     } else {
-        const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, bvhProgress, set);
+        const scene::SceneTables made = scene::makeSceneTables(scene, maxTableBytes, options.bvhProgress, featureSet);
         tables = std::make_unique<scene::GpuScene>(gpu, made);
         bvh = scene::statsOf(made);
         take(made);

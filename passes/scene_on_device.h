@@ -15,12 +15,19 @@
 namespace passes
 {
 
+struct SceneOptions {
+    // Everything: all features are compiled in, and even what cannot have changed is replayed. It gives the same
+    // picture, slower: for tests and benchmarks.
+    scene::FeatureSet featureSet = scene::FeatureSet::Needed;
+    std::function<void(double)> bvhProgress = {};      // of building the tree, from 0 to 1
+    std::shared_ptr<PipelinePool> pipelines = nullptr; // of this device, whose shaders need not be compiled again
+    bool moves = false; // the scene's own motion (scene::Motion): its pose will be changed
+};
+
 struct SceneOnDevice {
-    // With `moves`, the scene's own motion (scene::Motion): show() changes its pose. `camera`: the first one that it is
-    // seen by; all others have its kind of projection, which is compiled in.
+    // `camera`: the first one that it is seen by; all others have its kind of projection, which is compiled in.
     SceneOnDevice(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
-                  scene::FeatureSet featureSet, const std::function<void(double)>& bvhProgress,
-                  std::shared_ptr<PipelinePool> pipelines, bool moves = false);
+                  const SceneOptions& options = {});
     // Another one of a scene that moves, in the same poses until show(); textures and pipelines are shared.
     SceneOnDevice(const SceneOnDevice& other);
     SceneOnDevice& operator=(const SceneOnDevice&) = delete;

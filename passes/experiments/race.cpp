@@ -36,9 +36,9 @@ Race::Race(gpu::Device& device, const scene::Scene& scene, const std::vector<Set
     CHECK(!methods.empty());
     CHECK(!sequence_.moves() || limits_.frames > 0); // each measured frame has a reference of its own, then
     for (const Settings& settings : methods)
-        runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings, bvhProgress,
-                                                                          scene::FeatureSet::Needed, 1, nullptr,
-                                                                          sequence_.sceneMoves())
+        runners_.push_back({runners_.empty() ? std::make_unique<Renderer>(device, scene, settings,
+                                                                          SceneOptions{.bvhProgress = bvhProgress,
+                                                                                       .moves = sequence_.sceneMoves()})
                                              : std::make_unique<Renderer>(renderer(), settings)});
     for (Runner& runner : runners_) {
         for (const uint64_t frame : WARM_UP) {

@@ -218,7 +218,7 @@ nlohmann::ordered_json raceFeatures(gpu::Device& device, const std::string& name
                          .method = options.features,
                          .shift = options.shifts.back(),
                          .renderer = std::make_unique<passes::Renderer>(device, scene, settings,
-                                                                        std::function<void(double)>(), set)});
+                                                                        passes::SceneOptions{.featureSet = set})});
         return *cases.back().renderer;
     };
     const passes::Renderer& needed = add("needed", scene::FeatureSet::Needed);

@@ -98,7 +98,7 @@ void hostTime(gpu::Device& device, const char* what, scene::Scene scene, const O
 {
     passes::Settings settings;
     settings.width = settings.height = 16;
-    passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, 1, nullptr, true);
+    passes::Renderer renderer(device, scene, settings, {.moves = true});
     const passes::Sequence sequence = play(scene);
     std::vector<double> times;
     for (uint32_t frame = 1; frame <= options.rounds * options.frames; ++frame) {
@@ -169,16 +169,17 @@ void frameTime(gpu::Device& device, passes::Method method, const char* name, boo
         const passes::Sequence* sequence;
         std::unique_ptr<passes::Renderer> renderer;
         std::vector<double> milliseconds;
+        std::map<std::string, std::vector<double>> ofStages;
     };
     std::vector<Case> cases;
     for (const auto& [what, sequence] :
          {std::pair("at rest", &rests), {"camera moves", &orbit}, {"bodies move", &moves}})
-        cases.push_back(
-            {what,
-             sequence,
-             std::make_unique<passes::Renderer>(device, scene, settings, std::function<void(double)>(),
-                                                scene::FeatureSet::Needed, 1, nullptr, sequence->sceneMoves()),
-             {}});
+        cases.push_back({what,
+                         sequence,
+                         std::make_unique<passes::Renderer>(device, scene, settings,
+                                                            passes::SceneOptions{.moves = sequence->sceneMoves()}),
+                         {},
+                         {}});
     for (uint32_t round = 0; round <= options.rounds; ++round) {
         for (Case& c : cases) {
             c.sequence->bring(*c.renderer, 0);
@@ -187,7 +188,10 @@ void frameTime(gpu::Device& device, passes::Method method, const char* name, boo
                 c.sequence->bring(*c.renderer, frame);
                 c.renderer->renderFrame();
             }
-            if (round > 0) c.milliseconds.push_back(millisecondsOf(c.renderer->stats())); // warm by then
+            if (round == 0) continue; // warm by then
+            const passes::RenderStats stats = c.renderer->stats();
+            c.milliseconds.push_back(millisecondsOf(stats));
+            for (const auto& [stage, milliseconds] : stats.stageMilliseconds) c.ofStages[stage].push_back(milliseconds);
         }
     }
     for (const Case& c : cases) {
@@ -196,6 +200,8 @@ void frameTime(gpu::Device& device, passes::Method method, const char* name, boo
             ratios.push_back(c.milliseconds[i] / cases[0].milliseconds[i]);
         fmt::print("{} hybrid, {}: {:.1f} ms a frame, {:.2f} of the one at rest (medians of {} rounds)\n", name, c.name,
                    median(c.milliseconds), median(ratios), ratios.size());
+        for (const auto& [stage, milliseconds] : c.ofStages)
+            fmt::print("    {}: {:.1f}\n", stage, median(milliseconds));
     }
 }
 

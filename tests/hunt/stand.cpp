@@ -32,9 +32,9 @@ passes::Settings pathTracing(passes::Settings settings)
 
 Stand::Stand(gpu::Device& device, const std::shared_ptr<passes::PipelinePool>& pipelines, const Case& c)
     : case_(c), cameraAt_(passes::cameraOrbit(c.scene.cameras.at(0), c.orbit)),
-      trial_(std::make_unique<passes::Renderer>(device, c.onTrial(), c.settings, std::function<void(double)>(),
-                                                scene::FeatureSet::Needed, batchOf(c.settings, PIXELS_AT_ONCE),
-                                                pipelines, !c.moves.empty()))
+      trial_(std::make_unique<passes::Renderer>(device, c.onTrial(), c.settings,
+                                                passes::SceneOptions{.pipelines = pipelines, .moves = !c.moves.empty()},
+                                                batchOf(c.settings, PIXELS_AT_ONCE)))
 {
     for (uint32_t frame = 0; !c.moves.empty() && frame < c.settings.frames; ++frame) poses_.push_back(c.sceneIn(frame));
 }
@@ -95,9 +95,9 @@ void Stand::frames(uint64_t seed, uint64_t count, const TakeRun& takeRun)
         // Of a scene that moves the truth is a scene that never did, and in the truth all is stored where it is.
         truth_ = poses_.empty() && !case_.stores
                      ? std::make_unique<passes::Renderer>(*trial_, settings, runs)
-                     : std::make_unique<passes::Renderer>(
-                           trial_->device(), poses_.empty() ? case_.scene : poses_.back(), settings,
-                           std::function<void(double)>(), scene::FeatureSet::Needed, runs, trial_->pipelines());
+                     : std::make_unique<passes::Renderer>(trial_->device(),
+                                                          poses_.empty() ? case_.scene : poses_.back(), settings,
+                                                          passes::SceneOptions{.pipelines = trial_->pipelines()}, runs);
     }
     passes::Settings settings = pathTracing(case_.settings);
     settings.seed = Draw::mix(seed);

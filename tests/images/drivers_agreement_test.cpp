@@ -75,7 +75,7 @@ std::vector<image::Image> picturesOn(Driver& driver, const scene::Scene& scene, 
     settings.height = 16;
     settings.maxBounces = 3;
     settings.spatial = 1;
-    passes::Renderer renderer(driver.device, scene, settings, {}, scene::FeatureSet::Needed, 1, driver.pipelines);
+    passes::Renderer renderer(driver.device, scene, settings, {.pipelines = driver.pipelines});
     const passes::CameraAt cameraAt = passes::cameraOrbit(scene.cameras.at(0), 2);
     std::vector<image::Image> pictures;
     for (settings.seed = 0; settings.seed < RUNS; ++settings.seed) {

@@ -73,7 +73,7 @@ std::vector<RestirCase> movingCases()
                             for (const passes::Color color : {Chosen, Weighted}) {
                                 if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                                 cases.push_back(
-                                    {scene, method, shift, reuse, moves, maxConfidence, 1500, frames, color});
+                                    {scene, method, shift, reuse, moves, maxConfidence, 1000, frames, color});
                             }
     return atFamilyLevel(std::move(cases));
 }
@@ -159,7 +159,7 @@ TEST_F(MovingWorlds, AWorldThatMovesWithItsCameraRests)
         settings.maxConfidence = 1000;
         settings.average = false;
         const auto render = [&](bool moves) {
-            passes::Renderer renderer(device(), sceneAt(0), settings, {}, scene::FeatureSet::Needed, 1, nullptr, moves);
+            passes::Renderer renderer(device(), sceneAt(0), settings, {.moves = moves});
             for (uint32_t frame = 0; frame < 6; ++frame) {
                 if (moves) renderer.setScene(sceneAt(frame), frame);
                 if (moves) renderer.setCamera(sceneAt(frame).cameras[0]);

@@ -23,7 +23,7 @@ class Variants : public GpuTest
   protected:
     image::Image render(const TestScene& test, scene::FeatureSet features)
     {
-        passes::Renderer renderer(device(), test.make(), test.settings(), {}, features);
+        passes::Renderer renderer(device(), test.make(), test.settings(), {.featureSet = features});
         for (int i = 0; i < 2; ++i) renderer.renderFrame();
         return renderer.read(passes::MEAN);
     }

@@ -22,13 +22,13 @@ class FramePlan : public GpuTest
     static passes::SceneOnDevice cornell(scene::FeatureSet set = scene::FeatureSet::Needed)
     {
         const scene::Scene scene = scene::makeCornell();
-        return {device(), scene, scene.cameras.at(0), set, {}, nullptr};
+        return {device(), scene, scene.cameras.at(0), {.featureSet = set}};
     }
     static passes::SceneOnDevice movingCornell()
     {
         scene::Scene scene = scene::makeCornell();
         scene.motion = std::make_shared<scene::Motion>();
-        return {device(), scene, scene.cameras.at(0), scene::FeatureSet::Needed, {}, nullptr, true};
+        return {device(), scene, scene.cameras.at(0), {.moves = true}};
     }
     static std::string nameOf(const std::string& shader, const passes::Variant& variant)
     {

@@ -47,7 +47,7 @@ class MovingRenderer : public RendererFixture
     Renderer renderer(const scene::Scene& scene, const passes::Settings& settings, bool moves)
     {
         if (!pipelines_) pipelines_ = std::make_shared<passes::PipelinePool>(device());
-        return {device(), scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines_, moves};
+        return {device(), scene, settings, {.pipelines = pipelines_, .moves = moves}};
     }
     Renderer moving(const scene::Scene& scene, const passes::Settings& settings)
     {
@@ -99,8 +99,8 @@ TEST_F(MovingRenderer, ShowsEachPoseAsAStillRendererDoes)
         for (uint32_t frame = 0; frame < 3; ++frame) {
             moves.setScene(worldAt(name, frame), frame);
             moves.renderFrame();
-            Renderer still(device(), worldAt(name, frame), settings(passes::Method::Pt), {}, scene::FeatureSet::Needed,
-                           1, moves.pipelines());
+            Renderer still(device(), worldAt(name, frame), settings(passes::Method::Pt),
+                           {.pipelines = moves.pipelines()});
             for (uint32_t i = 0; i <= frame; ++i) still.renderFrame(); // of equal random numbers
             const size_t pixels = different(lastFrame(moves), lastFrame(still));
             EXPECT_LE(pixels, 4u) << name << ' ' << frame;
@@ -388,8 +388,7 @@ TEST_F(MovingRenderer, IsOfAnotherSceneWhereItMovesOtherwise)
         motion.animations.push_back({.channels = {{.width = 3, .times = 0, .values = 1}}});
         change(motion);
         scene.motion = std::make_shared<scene::Motion>(motion);
-        return passes::SceneOnDevice(device(), scene, scene.cameras[0], scene::FeatureSet::Needed, {}, nullptr, true)
-            .fingerprint();
+        return passes::SceneOnDevice(device(), scene, scene.cameras[0], {.moves = true}).fingerprint();
     };
     const std::vector<uint64_t> all = {
         fingerprint([](scene::Motion&) {}),

@@ -138,7 +138,7 @@ TEST_F(RendererTest, TracesCameraRaysOnlyWhereTheyDiffer)
         passes::Settings settings = settings_;
         settings.method = method;
         Renderer renderer = make(settings);
-        Renderer all(device(), scene_, settings, {}, scene::FeatureSet::Everything);
+        Renderer all(device(), scene_, settings, {.featureSet = scene::FeatureSet::Everything});
         const auto expectSame = [&](uint64_t tracedFrames) {
             const Pixels left = frames(renderer, 1), right = frames(all, 1);
             size_t different = 0;
@@ -292,7 +292,7 @@ TEST_F(RendererTest, TheFirstOfManyRunsIsTheLoneRun)
     for (const passes::Method method : {passes::Method::Pt, passes::Method::RgbRestir}) {
         settings.method = method;
         Renderer lone = make(settings);
-        Renderer many(device(), scene_, settings, {}, scene::FeatureSet::Needed, 3);
+        Renderer many(device(), scene_, settings, {}, 3);
         for (int frame = 0; frame < 3; ++frame)
             for (Renderer* renderer : {&lone, &many}) {
                 scene::Camera camera = scene_.cameras[0];
@@ -317,7 +317,7 @@ TEST_F(RendererTest, RunsAreIndependentAndAlike)
     constexpr int FRAMES = 200;
     passes::Settings settings = settings_;
     settings.width = settings.height = 12;
-    Renderer renderer(device(), scene_, settings, {}, scene::FeatureSet::Needed, RUNS);
+    Renderer renderer(device(), scene_, settings, {}, RUNS);
     const size_t pixels = size_t{settings.width} * settings.height;
     std::vector<statistics::Moments> values(RUNS * pixels);
     std::vector<Pixels> frames;

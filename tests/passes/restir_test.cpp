@@ -113,7 +113,7 @@ TEST_F(RestirTest, RgbIsTheRunningMeanOfThePathTracer)
         const scene::Scene scene = sceneNamed(name);
         const std::vector<Pixels> traced = pathTraced(scene, FRAMES);
         for (const scene::FeatureSet features : {scene::FeatureSet::Needed, scene::FeatureSet::Everything}) {
-            Renderer renderer(device(), scene, resting(Method::RgbRestir), {}, features);
+            Renderer renderer(device(), scene, resting(Method::RgbRestir), {.featureSet = features});
             for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
             const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
             size_t wrong = 0;
@@ -138,7 +138,7 @@ TEST_F(RestirTest, HybridShiftsHomeAreIdentities)
         const std::vector<Pixels> traced = pathTraced(scene, FRAMES);
         Settings settings = resting(Method::RgbRestir);
         settings.shift = Shift::Hybrid;
-        Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Everything);
+        Renderer renderer(device(), scene, settings, {.featureSet = scene::FeatureSet::Everything});
         for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
         const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
         size_t wrong = 0;
@@ -193,7 +193,7 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
         std::vector<std::byte> histories[2], paths[2];
         for (const Color color : {Color::Chosen, Color::Weighted}) {
             settings.color = color;
-            Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines);
+            Renderer renderer(device(), scene, settings, {.pipelines = pipelines});
             for (uint64_t frame = 0; frame < 4; ++frame) {
                 renderer.setCamera(cameraAt(frame));
                 renderer.renderFrame();

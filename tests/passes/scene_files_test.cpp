@@ -26,7 +26,7 @@ class SceneFiles : public RendererFixture
         settings.width = 16;
         settings.height = 9;
         if (!pipelines_) pipelines_ = std::make_shared<passes::PipelinePool>(device());
-        passes::Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines_);
+        passes::Renderer renderer(device(), scene, settings, {.pipelines = pipelines_});
         for (int frame = 0; frame < 2; ++frame) renderer.renderFrame();
         const image::Image picture = renderer.read(passes::colorOf(renderer.settings()));
         for (const glm::vec3& pixel : picture.pixels) {

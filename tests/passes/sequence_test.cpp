@@ -68,7 +68,7 @@ TEST_F(SequenceOfFrames, BringsSceneAndCamera)
     EXPECT_TRUE(sequence.moves() && sequence.sceneMoves());
     Settings settings;
     settings.width = settings.height = 8;
-    Renderer renderer(device(), scene, settings, {}, scene::FeatureSet::Needed, 1, nullptr, true);
+    Renderer renderer(device(), scene, settings, {.moves = true});
     for (int64_t frame = 0; frame < 3; ++frame) {
         sequence.bring(renderer, frame);
         EXPECT_EQ(renderer.sceneSeconds(), 0.5 * double(frame));

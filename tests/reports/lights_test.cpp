@@ -122,7 +122,7 @@ TEST_F(LightReports, EveryTexelOfASky)
         passes::Settings settings;
         settings.width = settings.height = size;
         settings.maxBounces = 1;
-        passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, 1, pipelines);
+        passes::Renderer renderer(device, scene, settings, {.pipelines = pipelines});
         pipelines = renderer.pipelines();
         for (uint32_t frame = 0; frame < frames; ++frame) renderer.renderFrame();
         for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;

@@ -30,7 +30,7 @@ PictureEstimates renderRuns(gpu::Device& device, const scene::Scene& scene, cons
 {
     const uint32_t batches = batchesOf(runs), batch = (runs + batches - 1) / batches;
     PictureRuns result;
-    passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, batch, nullptr, bool(sceneAt));
+    passes::Renderer renderer(device, scene, settings, {.moves = bool(sceneAt)}, batch);
     const auto bring = [&](uint32_t frame) {
         if (cameraAt) renderer.setCamera(cameraAt(frame));
         if (sceneAt) renderer.setScene(sceneAt(frame), frame);

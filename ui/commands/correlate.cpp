@@ -140,11 +140,13 @@ int CorrelateCommand::run()
     facts.emplace_back("batches", std::to_string(sizes.size()));
     std::vector<passes::CorrelationBatch> batches = store.load(sizes);
 
-    passes::Correlator correlator(std::make_unique<passes::Renderer>(
-                                      gpu, world, passes::emissionSettings(base),
-                                      [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
-                                      scene::FeatureSet::Needed, 1, nullptr, sequence.sceneMoves()),
-                                  base, list, sequence);
+    passes::Correlator correlator(
+        std::make_unique<passes::Renderer>(
+            gpu, world, passes::emissionSettings(base),
+            passes::SceneOptions{
+                .bvhProgress = [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
+                .moves = sequence.sceneMoves()}),
+        base, list, sequence);
     progress.clear();
 
     // What this process has to do: items in the order of batches, dealt out in turns.

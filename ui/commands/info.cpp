@@ -331,8 +331,9 @@ int InfoCommand::run() const
         Progress progress(quiet);
         gpu::Device gpu = device.open();
         const scene::Scene world = openScene(scene, chosen, progress);
-        passes::Renderer renderer(gpu, world, chosen,
-                                  [&](double fraction) { progress.show("Building the BVH", fraction, 1); });
+        passes::Renderer renderer(gpu, world, chosen, {.bvhProgress = [&](double fraction) {
+                                      progress.show("Building the BVH", fraction, 1);
+                                  }});
         progress.clear();
         facts["device"] = gpu.adapter().name;
         facts["tuning"] = tuningJson(gpu.adapter().tuning);

@@ -217,9 +217,9 @@ int RenderCommand::run()
     const passes::Sequence sequence = motion.read(world, report.settings, scene);
     report.adapter = gpu.adapter();
     report.loadSeconds = secondsSince(loadStart);
-    passes::Renderer renderer(
-        gpu, world, report.settings, [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
-        scene::FeatureSet::Needed, 1, nullptr, sequence.sceneMoves());
+    passes::Renderer renderer(gpu, world, report.settings,
+                              {.bvhProgress = [&](double fraction) { progress.show("Building the BVH", fraction, 1); },
+                               .moves = sequence.sceneMoves()});
 
     if (const int failed = ranks().meet(); failed != 0) return failed;
     const Share share = renderFrames(renderer, sequence, progress, report, commandStart);

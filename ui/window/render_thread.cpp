@@ -196,9 +196,11 @@ void RenderThread::load(const Order& order)
     const passes::Playback playback = playbackOf(order, animationsOf(*world, order));
     const bool moves = !playback.animations.empty();
     if (moves) scene::pose(*world, {}, 0); // what renderers are made of
-    auto renderer =
-        std::make_unique<passes::Renderer>(*device_, *world, settings, progress, scene::FeatureSet::Needed, 1,
-                                           sides_[A] ? sides_[A]->renderer().pipelines() : nullptr, moves);
+    auto renderer = std::make_unique<passes::Renderer>(
+        *device_, *world, settings,
+        passes::SceneOptions{.bvhProgress = progress,
+                             .pipelines = sides_[A] ? sides_[A]->renderer().pipelines() : nullptr,
+                             .moves = moves});
     if (moves) {
         const double seconds = playback.secondsAt(0, *world->motion);
         scene::pose(*world, playback.animations, seconds);

@@ -192,9 +192,9 @@ class SavingsStudy : public Study
   public:
     explicit SavingsStudy(const Subject& subject)
         : needed_(siblingOf(subject, subject.settings)),
-          everything_(std::make_unique<passes::Renderer>(subject.like.device(), subject.scene, subject.settings,
-                                                         std::function<void(double)>(), scene::FeatureSet::Everything,
-                                                         1, nullptr, subject.like.scene().moves()))
+          everything_(std::make_unique<passes::Renderer>(
+              subject.like.device(), subject.scene, subject.settings,
+              passes::SceneOptions{.featureSet = scene::FeatureSet::Everything, .moves = subject.like.scene().moves()}))
     {
         if (const std::optional<double> seconds = subject.like.sceneSeconds())
             everything_->setScene(subject.scene, *seconds);

@@ -56,7 +56,7 @@ class Autocovariance : public RendererFixture
 
     Renderer renderer(const scene::Scene& scene, const Settings& s, uint32_t runs)
     {
-        return {device(), scene, s, {}, scene::FeatureSet::Needed, runs};
+        return {device(), scene, s, {}, runs};
     }
 
     image::Image emissionOf(const scene::Scene& scene)

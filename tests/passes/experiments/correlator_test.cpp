@@ -77,7 +77,7 @@ TEST_F(CorrelatorTest, MeasuresTheLawThatAMethodLacksAndItsChain)
     EXPECT_TRUE(!each.law && each.points.size() == 3);
 
     // The chain is what the method's renderer gives alone.
-    Renderer alone(device(), scene_, with(Method::RestirPt), {}, scene::FeatureSet::Needed, RUNS);
+    Renderer alone(device(), scene_, with(Method::RestirPt), {}, RUNS);
     passes::Chain chain(alone);
     while (chain.frame() < base_.frames) chain.step();
     EXPECT_EQ(chain.points(), one.points);

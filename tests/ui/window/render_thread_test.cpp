@@ -175,7 +175,7 @@ TEST(RenderThread, PlayingStepsBothSidesThroughWhatASequenceShows)
     for (const ui::Side side : {ui::A, ui::B}) {
         const passes::Settings settings = ui::settingsOf(order, side);
         scene::Scene scene = ui::openScene({.name = order.scene.name}, settings, [](const std::string&, double) {});
-        passes::Renderer renderer(device, scene, settings, {}, scene::FeatureSet::Needed, 1, nullptr, true);
+        passes::Renderer renderer(device, scene, settings, {.moves = true});
         const passes::Sequence sequence(scene, order.play.playback({0}, 0.5), 0);
         for (uint64_t frame = 0; frame < FRAMES; ++frame) {
             sequence.bring(renderer, int64_t(frame));
