@@ -73,7 +73,7 @@ std::vector<RestirCase> movingCases()
                             for (const passes::Color color : {Chosen, Weighted}) {
                                 if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                                 cases.push_back(
-                                    {scene, method, shift, reuse, moves, maxConfidence, 1000, frames, color});
+                                    {scene, method, shift, reuse, moves, maxConfidence, 8000, frames, color});
                             }
     return atFamilyLevel(std::move(cases));
 }

@@ -19,7 +19,7 @@ using SceneAt = std::function<scene::Scene(uint32_t frame)>;
 // pictures.
 uint32_t batchesOf(uint32_t runs);
 
-// Is what is known after some batches enough?
+// Is what is known after some batches enough? Asked after each.
 using Enough = std::function<bool(const PictureEstimates&)>;
 
 // Independent runs, each read after settings.frames frames (their mean, or with !settings.average the last), until all

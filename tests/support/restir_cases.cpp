@@ -7,6 +7,7 @@
 #include "tests/support/test_scenes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <map>
 #include <tuple>
@@ -78,7 +79,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     const passes::CameraAt cameraAt = passes::cameraOrbit(world.cameras.at(0), moves ? 3 : 0);
 
     const uint32_t lastFrame = frames - 1;
-    const uint32_t traceFrames = sceneAt ? std::max(PT_FRAMES, 8 * runs) : PT_FRAMES;
+    const uint32_t traceFrames = sceneAt ? std::clamp(8 * runs, PT_FRAMES, 12000u) : PT_FRAMES;
     using View = std::tuple<std::string, bool, uint32_t, uint32_t>; // scene, moves, frame, traced
     static std::map<View, PictureEstimates> traced;                 // the matrix asks again and again
     PictureEstimates& expected = traced[{scene, moves, moves || sceneAt ? lastFrame : 0, traceFrames}];
@@ -99,13 +100,16 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     settings.frames = frames;
     settings.average = false;
 
-    // Looked at after every batch of runs, each look with its share of the levels. What differs will not agree later;
-    // what agrees is rendered on until each tile is known within 2%, since opposite errors in two tiles cancel in the
-    // whole.
-    const double share = 1.0 / batchesOf(runs);
+    // Looked at after 1, 2, 4 ... batches of runs, each look with its share of the levels. What differs will not agree
+    // later; what agrees is rendered on until each tile is known within 2%, since opposite errors in two tiles cancel
+    // in the whole.
+    const uint32_t batches = batchesOf(runs);
+    const double share = 1.0 / (std::bit_width(batches - 1) + 1);
     const Levels levels{level * share, 0.05 * share};
     TileVerdict verdict;
+    uint32_t batch = 0;
     renderRuns(device, world, settings, runs, cameraAt, sceneAt, [&](const PictureEstimates& got) {
+        if (!std::has_single_bit(++batch) && batch != batches) return false;
         verdict = picturesAgree(got, expected, 0.01, DEVICE_ROUNDING, levels);
         return !tilesAgree(got.tiles, expected.tiles, levels.differ, DEVICE_ROUNDING).passes ||
                (verdict.passes && tilesAreEquivalent(got.tiles, expected.tiles, 0.02, levels.equivalent).passes);
