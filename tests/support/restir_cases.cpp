@@ -38,7 +38,7 @@ std::vector<RestirCase> restirMatrix()
                             if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                             cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color});
                         }
-    return atFamilyLevel(std::move(cases));
+    return asFamily(std::move(cases));
 }
 
 } // namespace
@@ -89,7 +89,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
         expected = renderFrames(device, last, settings, traceFrames);
     }
 
-    settings.seed = 1000;
+    settings.seed = seed;
     settings.method = method;
     settings.shift = shift;
     settings.temporal = reuse != Reuse::Spatial;
@@ -117,10 +117,13 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     return verdict;
 }
 
-std::vector<RestirCase> atFamilyLevel(std::vector<RestirCase> cases, double level)
+std::vector<RestirCase> asFamily(std::vector<RestirCase> cases, double level)
 {
     const double each = statistics::sidakLevel(level, cases.size());
-    for (RestirCase& c : cases) c.level = each;
+    for (size_t i = 0; i < cases.size(); ++i) {
+        cases[i].level = each;
+        cases[i].seed = 1000 * (i + 1);
+    }
     return cases;
 }
 

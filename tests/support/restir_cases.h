@@ -25,6 +25,7 @@ struct RestirCase {
     uint32_t frames = 5;
     passes::Color color = passes::Color::Weighted;
     double level = 1e-3; // how often what is unbiased may seem biased
+    uint64_t seed = 1000;
 
     std::string name() const;
     // The last frame, its mean over many runs, against the path tracer's picture from the same place.
@@ -32,8 +33,8 @@ struct RestirCase {
 };
 void PrintTo(const RestirCase& c, std::ostream* os);
 
-// Each at its share of a level for all of them.
-std::vector<RestirCase> atFamilyLevel(std::vector<RestirCase> cases, double level = 1e-3);
+// Each at its share of a level for all of them, and with numbers of its own.
+std::vector<RestirCase> asFamily(std::vector<RestirCase> cases, double level = 1e-3);
 
 // With TRICHROME_TEST_MATRIX set: the whole product, in one scene.
 std::vector<RestirCase> restirCases();
