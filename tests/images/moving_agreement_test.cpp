@@ -56,7 +56,7 @@ std::vector<RestirCase> movingCases()
             {"PanesSlide", RgbRestir, Hybrid, Both, false, 8, 300},
             {"BumpsMove", RestirPt, Hybrid, Both, false, 8},
             {"OrthographicBall", RgbRestir, Hybrid, Both, true, 8},
-            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 16, 1200},
+            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 4000},
             {"RoomRebuilds", RestirPt, Reconnection, Temporal, true, 8, 600},
             {"RoomRebuilds", GroupedRestir, Replay, Both, false, 8, 450},
         };
