@@ -26,7 +26,8 @@ std::vector<PixelBuffer> pixelBuffers(const Settings& settings)
     const uint64_t paths = settings.shift == Shift::Replay ? 0 : count * shared::pathRows(one) * ROW;
     const uint64_t confidence = resamples ? WORD : 0;
     const uint64_t shifted = resamples ? settings.spatial * shared::slotRows(count, one) * ROW : 0;
-    const uint64_t merged = colorReading(settings) == Color::Weighted ? ROW : 0;
+    const uint64_t merged = colorReading(settings) != Color::Chosen ? ROW : 0;
+    const uint64_t variate = colorReading(settings) == Color::Variate ? ROW : 0;
     return {
         {.name = "Surfaces", .bytes = shared::SURFACE_ROWS * ROW, .lasts = resamples},
         {.name = "Color", .bytes = shared::COLOR_ROWS * ROW, .lasts = true},
@@ -39,6 +40,7 @@ std::vector<PixelBuffer> pixelBuffers(const Settings& settings)
         {.name = "HistoryConfidences", .bytes = confidence, .lasts = resamples, .usage = WORDS},
         {.name = "Shifted", .bytes = shifted, .blame = "--size or --spatial"},
         {.name = "MergedColor", .bytes = merged, .blame = "--size or --color"},
+        {.name = "HistoryColor", .bytes = variate, .lasts = variate > 0, .blame = "--size or --color"},
     };
 }
 

@@ -103,6 +103,7 @@ void Renderer::tune()
     frame_.key0 = uint32_t(key);
     frame_.key1 = uint32_t(key >> 32);
     frame_.maxConfidence = settings_.maxConfidence;
+    frame_.colorConfidence = settings_.colorConfidence;
     frame_.neighborCount = settings_.spatial;
     frame_.neighborRadius = neighborRadius(settings_);
 }

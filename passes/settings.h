@@ -19,7 +19,7 @@ namespace passes
 
 enum class Method : uint32_t { Pt, RestirPt, RgbRestir, GroupedRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
-enum class Color : uint32_t { Chosen, Weighted };
+enum class Color : uint32_t { Chosen, Weighted, Variate };
 enum class PixelFilter : uint32_t { Center, Box };
 
 // Their words, and those of what is on or off, on the command line and in presets: WORDS_OF<Shift>[size_t(shift)].
@@ -32,7 +32,7 @@ inline constexpr auto WORDS_OF<Method> = std::array{"pt", "restir-pt", "rgb-rest
 template <>
 inline constexpr auto WORDS_OF<Shift> = std::array{"replay", "reconnection", "hybrid"};
 template <>
-inline constexpr auto WORDS_OF<Color> = std::array{"chosen", "weighted"};
+inline constexpr auto WORDS_OF<Color> = std::array{"chosen", "weighted", "variate"};
 template <>
 inline constexpr auto WORDS_OF<PixelFilter> = std::array{"center", "box"};
 
@@ -51,6 +51,7 @@ struct Settings {
     uint32_t spatial = 3;    // K
     float spatialRadius = 0; // pixels; 0: by the picture's height
     Color color = Color::Weighted;
+    uint32_t colorConfidence = 1048576; // the most that history counts in variate's own estimate
     uint32_t maxBounces = 5; // scattering events
     PixelFilter pixelFilter = PixelFilter::Center;
     uint32_t width = 640;
@@ -127,7 +128,8 @@ void visitSettings(AnySettings& s, Visitor&& visit)
     visit(Knob{"temporal", Role::Estimator, Change::Tune, 0, 0, "", "ReSTIR's reuse of the previous frame. Unbiased; costs one or two shifts per pixel and reservoir."}, s.temporal);
     visit(Knob{"spatial", Role::Estimator, Change::Compile, 0, 8, "neighbors", "ReSTIR's spatial reuse; 0 turns it off. Unbiased; cost grows with each neighbor."}, s.spatial);
     visit(Knob{"spatial-radius", Role::Estimator, Change::Tune, 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
-    visit(Knob{"color", Role::Estimator, Change::Compile, 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs. One picture for rgb-restir, whose samples have one color. Unbiased, free."}, s.color);
+    visit(Knob{"color", Role::Estimator, Change::Compile, 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs; variate: those beside an estimate of the color of its own, which reuse sharpens as the reservoirs do and for which they are the control variate: color noise that goes on falling with history, nearly rgb-restir's, at luminance's price. One picture for rgb-restir, whose samples have one color. Unbiased; variate costs 32 bytes a pixel."}, s.color);
+    visit(Knob{"color-confidence", Role::Estimator, Change::Tune, 1, 1048576, "frames", "Of --color variate: the most that history may count against a new frame in its own estimate, beyond what M_c allows. Smaller: it follows light that changes, and is noisier where it does not. Unbiased, free."}, s.colorConfidence);
     visit(Knob{"max-bounces", Role::Picture, Change::Compile, 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
     visit(Knob{"pixel-filter", Role::Picture, Change::Compile, 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
     visit(Knob{"size", Role::View, Change::Compile, 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});

@@ -25,7 +25,8 @@ static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
               uint32_t(Shift::Reconnection) == shared::SHIFT_RECONNECTION &&
               uint32_t(Shift::Hybrid) == shared::SHIFT_HYBRID);
 
-static_assert(uint32_t(Color::Chosen) == shared::COLOR_CHOSEN && uint32_t(Color::Weighted) == shared::COLOR_WEIGHTED);
+static_assert(uint32_t(Color::Chosen) == shared::COLOR_CHOSEN && uint32_t(Color::Weighted) == shared::COLOR_WEIGHTED &&
+              uint32_t(Color::Variate) == shared::COLOR_VARIATE);
 
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
                     const scene::TraversalStack& stack, bool moves)

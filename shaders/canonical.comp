@@ -7,7 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 TABLE_OUT(SET_PASS, 1, Reservoirs);
 TABLE_OUT(SET_PASS, 2, ReservoirPaths);
 TABLE_OUT(SET_PASS, 3, Color); // seen directly; gather adds the rest
-TABLE_OUT(SET_PASS, 4, MergedColor);
+TABLE_OUT(SET_PASS, 4, MergedColor); // what the path tracer would add, and the albedo
 layout(set = SET_PASS, binding = 5, std430) writeonly buffer Confidences { uint confidences[]; };
 
 #include "candidates.glsl"
@@ -22,7 +22,7 @@ void offer(PathSample y, vec3 f, float density)
 {
     f = finiteOrCounted(f, STAGE);
     vec3 stored = finiteOrCounted(f * density, STAGE);
-    if (COLOR_READING == COLOR_WEIGHTED) allPaths += f;
+    if (COLOR_READING != COLOR_CHOSEN) allPaths += f;
     float u = decisionNumber(y.seed.pixel, STREAM_CANONICAL + y.pathId); // one for all reservoirs
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!consider(canonical[c], targetOf(c, f), u)) continue;
@@ -39,9 +39,10 @@ void main()
 
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) canonical[c] = EMPTY;
     vec3 emission;
-    bool seen = offerCandidates(PathSeed(frame.frame, pixel), at, emission);
+    vec3 albedo;
+    bool seen = offerCandidates(PathSeed(frame.frame, pixel), at, emission, albedo);
     STORE(Color, pixel, rowOf(finiteOrCounted(emission, STAGE)));
-    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, pixel, rowOf(allPaths));
+    if (COLOR_READING != COLOR_CHOSEN) STORE(MergedColor, pixel, uvec4(floatBitsToUint(allPaths), packedAlbedo(albedo)));
     storeReservoirs(pixel, canonical);
     confidences[pixel] = seen ? 1u : 0u; // also when no path carried light: that is news too
     countCandidates();

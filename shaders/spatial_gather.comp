@@ -14,6 +14,7 @@ TABLE_OUT(SET_PASS, 5, History);
 TABLE_OUT(SET_PASS, 6, HistoryPaths);
 TABLE_INOUT(SET_PASS, 7, Color);
 layout(set = SET_PASS, binding = 8, std430) writeonly buffer HistoryConfidences { uint historyConfidences[]; };
+TABLE_OUT(SET_PASS, 9, HistoryColor);
 
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
@@ -40,6 +41,7 @@ void main()
         uint neighbor = neighborOf(pixel, slot);
         if (neighbor != NO_NEIGHBOR) neighborConfidence += float(FETCH_WORD(Confidences, neighbor));
     }
+    float total = confidence + neighborConfidence; // M
     Reservoir r[MAX_RESERVOIRS];
     PairwiseMerge merge[MAX_RESERVOIRS];
     uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
@@ -48,12 +50,21 @@ void main()
         merge[c] = beginMerge(r[c], confidence, neighborConfidence);
         lender[c] = pixel;
     }
-    vec3 weighted = vec3(0.0); // sum of w chi over all that is merged
+    uvec4 ownColor = uvec4(0u); // A_i and the albedo
+    if (COLOR_READING != COLOR_CHOSEN) ownColor = FETCH(MergedColor, pixel);
+    vec3 weighted = vec3(0.0); // sum of w chi over all that is merged; of COLOR_VARIATE: A' - A_i
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
         uint neighbor = neighborOf(pixel, slot);
         if (neighbor == NO_NEIGHBOR) continue;
-        float otherConfidence = float(FETCH_WORD(Confidences, neighbor)); // c_j
-        float u = decisionNumber(pixel, STREAM_SPATIAL + slot);           // one for all reservoirs
+        float otherConfidence = float(FETCH_WORD(Confidences, neighbor));    // c_j
+        float u = decisionNumber(pixel, STREAM_SPATIAL + slot);              // one for all reservoirs
+        float beta = otherConfidence * neighborConfidence / (total * total); // beta_j: eps_j of equal domains
+        vec3 k = vec3(1.0);
+        if (COLOR_READING == COLOR_VARIATE) {
+            uvec4 otherColor = FETCH(MergedColor, neighbor);
+            k = albedoRatio(ownColor.w, otherColor.w);
+            weighted += beta * (k * uintBitsToFloat(otherColor.xyz) - uintBitsToFloat(ownColor.xyz));
+        }
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             Reservoir other = loadReservoirsHead(neighbor, c);
             vec3 fHere = shiftedFrom(neighbor, slot, c);
@@ -62,6 +73,9 @@ void main()
             float weight; // w_j
             bool chosen = mergeNeighbor(merge[c], r[c], other, a, b, otherConfidence, u, weight);
             if (COLOR_READING == COLOR_WEIGHTED) weighted += weight * colorOf(c, fHere);
+            if (COLOR_READING == COLOR_VARIATE)
+                weighted += beta * colorDifference(c, r[c], shiftedFrom(pixel, slot, c), other, fHere,
+                                                   vec2(confidence, otherConfidence), k);
             if (!chosen) continue;
             merge[c].neighbors.chosen = other.chosen;
             merge[c].neighbors.f = fHere;
@@ -86,6 +100,11 @@ void main()
     storeHistory(pixel, r);
     historyConfidences[pixel] = uint(confidence + neighborConfidence);
     // Without neighbors nothing was merged here: the merge before stands.
-    if (COLOR_READING == COLOR_WEIGHTED) color = neighborConfidence > 0.0 ? weighted : colorIn(MergedColor, pixel);
+    if (COLOR_READING != COLOR_CHOSEN) {
+        color = uintBitsToFloat(ownColor.xyz);
+        if (neighborConfidence > 0.0) color = COLOR_READING == COLOR_VARIATE ? color + weighted : weighted;
+    }
+    if (COLOR_READING == COLOR_VARIATE)
+        STORE(HistoryColor, pixel, uvec4(floatBitsToUint(finiteOrCounted(color, STAGE)), ownColor.w));
     STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + color, STAGE)));
 }

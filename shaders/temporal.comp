@@ -9,8 +9,9 @@ TABLE(SET_PASS, 2, HistoryPaths);
 TABLE(SET_PASS, 3, HistoryConfidences);
 TABLE_INOUT(SET_PASS, 4, Reservoirs);
 TABLE_INOUT(SET_PASS, 5, ReservoirPaths);
-TABLE_OUT(SET_PASS, 6, MergedColor);
+TABLE_INOUT(SET_PASS, 6, MergedColor);
 layout(set = SET_PASS, binding = 7, std430) buffer Confidences { uint confidences[]; };
+TABLE(SET_PASS, 8, HistoryColor);
 
 #include "shift.glsl"
 #include "restir/estimator.glsl"
@@ -68,8 +69,17 @@ void main()
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
         if (BETWEEN_WORLDS) old[c].chosen.reconnection = renewed(c);
     uint confidence = confidences[pixel];
-    float u = decisionNumber(pixel, STREAM_TEMPORAL); // one for all reservoirs
-    vec3 color = vec3(0.0);                           // w_n chi(x) + w_h chi(T y)
+    uvec4 random = decisionRandom(pixel, STREAM_TEMPORAL);
+    float u = decisionFloat(random.x); // one for all reservoirs
+    vec3 color = vec3(0.0);            // COLOR_WEIGHTED: w_n chi(x) + w_h chi(T y); COLOR_VARIATE: D of the history
+    uvec4 newColor = uvec4(0u);        // A_n and the albedo
+    uvec4 oldColor = uvec4(0u);        // A_h, likewise
+    vec3 k = vec3(1.0);
+    if (COLOR_READING == COLOR_VARIATE) {
+        newColor = FETCH(MergedColor, pixel);
+        oldColor = FETCH(HistoryColor, previousPixel);
+        if (!SAME_VIEW) k = albedoRatio(newColor.w, oldColor.w);
+    }
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (SAME_VIEW) { // every pixel sees what it saw, all shifts are identities
             fHere[c] = old[c].f;
@@ -77,6 +87,8 @@ void main()
         }
         float rho = ratio(targetOf(c, fThere[c]), targetOf(c, r[c].f));
         float historyRho = ratio(targetOf(c, fHere[c]), targetOf(c, old[c].f));
+        if (COLOR_READING == COLOR_VARIATE && !SAME_VIEW) // there it is 0
+            color += colorDifference(c, r[c], fThere[c], old[c], fHere[c], vec2(confidence, historyConfidence), k);
         float weight; // w_n
         bool replaced = mergeHistory(r[c], old[c], rho, historyRho, float(confidence), float(historyConfidence), u, weight);
         if (COLOR_READING == COLOR_WEIGHTED) {
@@ -87,7 +99,14 @@ void main()
         r[c].chosen = old[c].chosen;
         r[c].f = fHere[c];
     }
-    if (COLOR_READING == COLOR_WEIGHTED) STORE(MergedColor, pixel, rowOf(finiteOrCounted(color, STAGE)));
+    if (COLOR_READING == COLOR_VARIATE) {
+        float newShare = share(float(confidence), 1.0, float(min(historyConfidence, frame.colorConfidence))); // beta_n
+        vec3 before = k * uintBitsToFloat(oldColor.xyz);
+        vec3 news = uintBitsToFloat(newColor.xyz) - before;
+        color = roundedAtRandom(before, newShare * news + (1.0 - newShare) * color, random.yzw);
+    }
+    if (COLOR_READING != COLOR_CHOSEN)
+        STORE(MergedColor, pixel, uvec4(floatBitsToUint(finiteOrCounted(color, STAGE)), newColor.w));
     storeReservoirs(pixel, r);
     confidences[pixel] = confidence + historyConfidence;
     countShifts();

@@ -183,12 +183,14 @@ Settings emissionSettings(Settings settings)
 
 bool lawHolds(const Settings& settings, bool sameView)
 {
-    return settings.temporal && settings.spatial == 0 && sameView;
+    const bool own = colorReading(settings) == Color::Variate && settings.colorConfidence < settings.maxConfidence;
+    return settings.temporal && settings.spatial == 0 && sameView && !own;
 }
 
-bool accumulates(Method method)
+bool accumulates(const Settings& settings)
 {
-    return resolvingTargets(method) == resolvingTargets(Method::Pt);
+    return resolvingTargets(settings.method) == resolvingTargets(Method::Pt) ||
+           colorReading(settings) == Color::Variate;
 }
 
 // Frame M shows c_M = S chi(Y_M), or A_M = c / M + (1 - 1 / M) c_(M-1), c the single frame M alone: the mean of c_M

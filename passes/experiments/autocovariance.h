@@ -89,9 +89,9 @@ Settings emissionSettings(Settings settings);
 // rests, and SceneOnDevice::viewRepeats()).
 bool lawHolds(const Settings& settings, bool sameView);
 
-// Whether every channel has a reservoir of its own, so that a resting camera's chain is the mean of the path tracer's
-// frames.
-bool accumulates(Method method);
+// Whether every channel is estimated for itself, by a reservoir of its own or beside one (Color::Variate), so that a
+// resting camera's chain is the mean of the path tracer's frames.
+bool accumulates(const Settings& settings);
 
 // The autocovariance between frames M-1 and M <= M_c + 1 that the law predicts, for each way of reading color: of
 // chosen samples V / M + (1 - 2 / M) P; of all with their weights V / M + (1 - 2 / M) (1 - 2 / (M - 1)) P, where the

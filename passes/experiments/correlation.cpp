@@ -96,7 +96,7 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
     for (const NamedMethod& method : methods) {
         Curve curve{.method = method};
         const bool known = lawHolds(method.settings, correlation.sameView);
-        const Batches own = accumulates(method.settings.method) ? plain : withLaw(batches, method.name);
+        const Batches own = accumulates(method.settings) ? plain : withLaw(batches, method.name);
         if (!own.empty() && known) {
             curve.plateau = laws(own, [](const FrameLaw& law) { return law.plateau; });
             curve.floor = meanOver(own, &FrameLaw::floor);

@@ -36,7 +36,7 @@ Correlator::Correlator(std::unique_ptr<Renderer> emitters, const Settings& base,
     for (const NamedMethod& method : methods) {
         const Settings& settings = method.settings;
         const uint32_t frames = std::max(MIN_LAW_FRAMES, lastFrame(settings) / LAW_SHARE);
-        const bool own = lawHolds(settings, sameView_) && !accumulates(settings.method);
+        const bool own = lawHolds(settings, sameView_) && !accumulates(settings);
         subjects_.push_back({method.name, settings, own ? frames : 0, lastFrame(settings)});
         subjects_.front().lawFrames = std::max(subjects_.front().lawFrames, frames); // as many as the longest
     }

@@ -17,14 +17,18 @@ void emit(uint pathId, vec3 f, Ending e)
     offer(y, f, density);
 }
 
-// False when the primary ray left the scene: nothing to integrate. `emission` is what the pixel sees directly.
-bool offerCandidates(PathSeed seed, uvec2 at, out vec3 emission)
+// False when the primary ray left the scene: nothing to integrate. `emission` is what the pixel sees directly, `albedo` that
+// of the surface.
+bool offerCandidates(PathSeed seed, uvec2 at, out vec3 emission, out vec3 albedo)
 {
     candidateSeed = seed;
     PrimaryHit hit = loadPrimaryHit(at);
+    albedo = vec3(0.0);
     if (hit.seen) {
         footprint = footprintOf(frame.camera, hit.s.position, hit.s.geometricNormal, hit.wo);
-        walk(hit.s, hit.wo, seed);
+        Bsdf bsdf = makeBsdf(hit.s, hit.wo);
+        albedo = albedoOf(bsdf);
+        walk(hit.s, bsdf, hit.wo, seed);
     }
     emission = hit.emission;
     return hit.seen;

@@ -56,6 +56,9 @@ float share(float a, float x, float b) { return x > 1.0 ? a / (a + b / x) : a * 
 // b / (a x + b), the rest.
 float rest(float a, float x, float b) { return x > 1.0 ? (b / x) / (a + b / x) : b / (a * x + b); }
 
+// x times that rest.
+float restTimes(float a, float x, float b) { return x > 1.0 ? b / (a + b / x) : x * b / (a * x + b); }
+
 // Eqs. 9 and 13 for canonical sample and history: `here` stands in its own domain, `history` in another; rho is the ratio
 // of targets (other over own domain) of here's sample, historyRho likewise (here's over its own) of history's sample.
 // True when history's sample is chosen: the caller replaces sample and f. `weight` is w_n, of here's sample; the rest of the

@@ -82,6 +82,15 @@ Bsdf makeBsdf(Surface s, vec3 woWorld)
     return b;
 }
 
+// About what part of light is scattered towards w_o.
+vec3 albedoOf(Bsdf b)
+{
+    vec3 albedo = PI * b.diffuse;
+    if (HAS_SPECULAR) albedo = albedo * (1.0 - b.specular + b.diffuseCoat) + specularFresnel(b, b.wo.z);
+    if (HAS_TRANSMISSION) albedo += b.transmission * b.baseColor * (1.0 - dielectricFresnel(b, b.wo.z));
+    return albedo;
+}
+
 bool absorbs(Bsdf b) { return b.pick == vec3(0.0); }
 
 // f |cos i| of all lobes of finite width, and the mixture's solid-angle density of sampling wi.

@@ -33,6 +33,10 @@ struct FrameUniform {
     float neighborRadius;         // pixels
     uint runHeight;               // pixels, of one run's picture: independent runs lie below each other
     uint world;                   // which of the scene's two worlds this frame shows: 0 or 1
+    uint colorConfidence;         // the most that history counts in COLOR_VARIATE's estimate, frames
+    uint padding0;
+    uint padding1;
+    uint padding2;
     vec4 target[MAX_RESERVOIRS];  // xyz: p_hat_c(f) = <target[c], f>
     vec4 resolve[MAX_RESERVOIRS]; // xyz: color = sum over c of resolve[c] f(Y_c) W_c
 };
@@ -73,7 +77,7 @@ SHARED_CONST uint COUNTER_COUNT = COUNTER_NONFINITE + STAGE_COUNT;
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 304);
+static_assert(sizeof(shared::CameraUniform) == 64 && sizeof(shared::FrameUniform) == 320);
 static_assert(shared::COUNTER_SHIFT == shared::RAY_KINDS);
 static_assert(shared::COUNTER_HELD == shared::COUNTER_SHIFT + shared::SHIFT_OUTCOMES);
 #endif

@@ -42,7 +42,8 @@
     X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
     X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
     X(30, uint, COLOR_READING, 0u,                                                                                     \
-      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last")        \
+      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last, 2 as "   \
+      "control variate of an estimate beside them")                                                                    \
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")              \
     X(32, bool, TWO_WORLDS, false, "a scene that moves: as it is in this frame, and as it was in the one before")      \
     X(33, bool, BETWEEN_WORLDS, false, "temporal reuse from a frame in which the scene was another")
@@ -57,6 +58,7 @@ SHARED_CONST uint SHIFT_HYBRID = 2u;
 // Values of COLOR_READING.
 SHARED_CONST uint COLOR_CHOSEN = 0u;
 SHARED_CONST uint COLOR_WEIGHTED = 1u;
+SHARED_CONST uint COLOR_VARIATE = 2u;
 
 SHARED_END
 

@@ -17,6 +17,7 @@
 #include "engine/base/error.h"
 #include "engine/base/files.h"
 #include "engine/gpu/gpu.h"
+#include "engine/image/metrics.h"
 #include "passes/camera_path.h"
 #include "passes/renderer.h"
 #include "tests/bench/scenes.h"
@@ -49,16 +50,16 @@ struct Case {
     std::unique_ptr<passes::Renderer> renderer;
     std::map<std::string, std::vector<double>> milliseconds; // by stage, of every round
     std::vector<double> totals;                              // of all stages, of every round
-    std::vector<double> processor; // the program's processor time, which other programs disturb less
-    passes::RenderStats stats;     // of the last round
-    std::vector<double> errors;    // relative MSE of the last frame, of every round
+    std::vector<double> processor;      // the program's processor time, which other programs disturb less
+    passes::RenderStats stats;          // of the last round
+    std::vector<image::Metrics> errors; // of the last frame, of every round
 };
 
-double mean(const std::vector<double>& values)
+double mean(const std::vector<image::Metrics>& list, double image::Metrics::*figure)
 {
     double sum = 0;
-    for (const double value : values) sum += value;
-    return sum / double(values.size());
+    for (const image::Metrics& metrics : list) sum += metrics.*figure;
+    return sum / double(list.size());
 }
 
 double median(std::vector<double> values)
@@ -66,21 +67,6 @@ double median(std::vector<double> values)
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
-}
-
-// Mean over pixels and channels of (a - r)^2 / (r^2 + 1e-4 m^2), m the mean of r: pixels count alike, black ones
-// finitely.
-double relativeError(const image::Image& picture, const image::Image& reference)
-{
-    double mean = 0, sum = 0;
-    for (const glm::vec3& r : reference.pixels) mean += double(r.r) + r.g + r.b;
-    mean /= 3 * double(reference.pixels.size());
-    for (size_t p = 0; p < reference.pixels.size(); ++p)
-        for (int c = 0; c < 3; ++c) {
-            const double r = reference.pixels[p][c], difference = picture.pixels[p][c] - r;
-            sum += difference * difference / (r * r + 1e-4 * mean * mean);
-        }
-    return sum / (3 * double(reference.pixels.size()));
 }
 
 image::Image tracedReference(gpu::Device& device, const scene::Scene& scene, const scene::Camera& camera,
@@ -112,7 +98,7 @@ void runRound(Case& c, const passes::CameraAt& cameraAt, const Options& options,
     const double processor = double(std::clock() - start) / CLOCKS_PER_SEC;
     c.stats = c.renderer->stats();
     if (round == 0) return; // drivers compile at the first dispatch
-    if (options.reference > 0) c.errors.push_back(relativeError(c.renderer->read(passes::LAST_FRAME), reference));
+    if (options.reference > 0) c.errors.push_back(image::measure(reference, c.renderer->read(passes::LAST_FRAME)));
     double total = 0;
     for (const auto& [stage, ms] : c.stats.stageMilliseconds) {
         c.milliseconds[stage].push_back(ms);
@@ -176,10 +162,15 @@ nlohmann::ordered_json report(const std::string& scene, const std::vector<Case>&
         }
         if (!c.errors.empty()) {
             // The path tracer's mean over as many frames as fit into this case's time.
-            const double error = mean(c.errors), inTime = mean(cases.front().errors) / toPt;
+            const double error = mean(c.errors, &image::Metrics::relmse), psnr = mean(c.errors, &image::Metrics::psnr),
+                         chroma = mean(c.errors, &image::Metrics::chromaMse),
+                         inTime = mean(cases.front().errors, &image::Metrics::relmse) / toPt;
             row["relmse"] = error;
             row["relmse_pt_same_time"] = inTime;
-            ratio += fmt::format("; relative MSE {:.4g}, pt in that time {:.4g}", error, inTime);
+            row["psnr"] = psnr;
+            row["chroma_mse"] = chroma;
+            ratio += fmt::format("; relative MSE {:.4g}, pt in that time {:.4g}, PSNR {:.2f} dB, chroma MSE {:.3g}",
+                                 error, inTime, psnr, chroma);
         }
         fmt::print("  {}{:<10} {:<12} {:8.1f} ms, {:5.2f} of pt, {:5.1f} rays/pixel{}; ms:{}\n",
                    c.shaders.empty() ? "" : c.shaders + " ", c.method, c.shift, total, toPt, perPixel, ratio, stages);
@@ -323,7 +314,7 @@ int main(int count, char** arguments)
     app.add_option("--shifts", options.shifts, "shift maps")
         ->check(CLI::IsMember({"replay", "reconnection", "hybrid"}));
     app.add_option("--colors", options.colors, "how restir-pt's color is read")
-        ->check(CLI::IsMember({"chosen", "weighted"}));
+        ->check(CLI::IsMember({"chosen", "weighted", "variate"}));
     app.add_option("--shaders", options.shaders, "folders of shader trees, raced against each other");
     app.add_option("--tunings", options.tunings, "NAME=VALUE,... of the device, raced against each other; '': none");
     app.add_option("--device", options.device, "index or part of a name");

@@ -59,6 +59,10 @@ std::vector<RestirCase> movingCases()
             {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 4000},
             {"RoomRebuilds", RestirPt, Reconnection, Temporal, true, 8, 600},
             {"RoomRebuilds", GroupedRestir, Replay, Both, false, 8, 450},
+            {"RoomRebuilds", RestirPt, Hybrid, Both, false, 8, 600, 4, Variate},
+            {"LampChanges", RestirPt, Hybrid, Both, false, 8, 4000, 5, Variate},
+            {"PaintDries", RestirPt, Hybrid, Both, true, 8, 300, 4, Variate},
+            {"PanesSlide", RestirPt, Replay, Temporal, false, 8, 300, 5, Variate},
         };
         return cases;
     }
@@ -70,7 +74,7 @@ std::vector<RestirCase> movingCases()
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 3u), {8u, 6u}, {64u, 5u}})
                         for (const char* scene : {"RoomRebuilds", "WallStretches"})
-                            for (const passes::Color color : {Chosen, Weighted}) {
+                            for (const passes::Color color : {Chosen, Weighted, Variate}) {
                                 if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                                 cases.push_back(
                                     {scene, method, shift, reuse, moves, maxConfidence, 8000, frames, color});

@@ -52,6 +52,7 @@ TEST(FrameBuffers, TakeOfAPixelWhatTheDocumentsSay)
     EXPECT_EQ(bytes(Method::Pt, Shift::Hybrid), 80u);
     EXPECT_EQ(bytes(Method::RestirPt, Shift::Hybrid), 312u);
     EXPECT_EQ(bytes(Method::RestirPt, Shift::Hybrid, Color::Chosen), 296u);
+    EXPECT_EQ(bytes(Method::RestirPt, Shift::Hybrid, Color::Variate), 328u);
     EXPECT_EQ(bytes(Method::RestirPt, Shift::Replay), 216u);
     EXPECT_EQ(bytes(Method::RgbRestir, Shift::Hybrid), 488u);
     EXPECT_EQ(bytes(Method::RgbRestir, Shift::Replay), 296u);
@@ -60,15 +61,20 @@ TEST(FrameBuffers, TakeOfAPixelWhatTheDocumentsSay)
 
 TEST(FrameBuffers, KeepWhatTheNextFrameNeeds)
 {
-    const auto lasting = [](Method method) {
+    const auto lasting = [](Method method, Color color = Color::Weighted) {
+        Settings settings = settingsOf(method, Shift::Hybrid, 64, 36);
+        settings.color = color;
         std::vector<std::string> names;
-        for (const passes::PixelBuffer& buffer : passes::pixelBuffers(settingsOf(method, Shift::Hybrid, 64, 36)))
+        for (const passes::PixelBuffer& buffer : passes::pixelBuffers(settings))
             if (buffer.lasts) names.emplace_back(buffer.name);
         return names;
     };
     EXPECT_EQ(lasting(Method::Pt), (std::vector<std::string>{"Color", "Film"}));
     EXPECT_EQ(lasting(Method::RgbRestir),
               (std::vector<std::string>{"Surfaces", "Color", "Film", "History", "HistoryPaths", "HistoryConfidences"}));
+    EXPECT_EQ(lasting(Method::RestirPt, Color::Variate),
+              (std::vector<std::string>{"Surfaces", "Color", "Film", "History", "HistoryPaths", "HistoryConfidences",
+                                        "HistoryColor"}));
 }
 
 TEST(FrameBuffers, HoldAsManyRunsAsMemoryAndWorkgroupsAllow)

@@ -169,10 +169,34 @@ TEST_F(RestirTest, LuminanceIsTheRunningMeanOfThePathTracersLuminance)
     EXPECT_GT(otherChannels, picture.size() / 10); // else there was nothing to prove
 }
 
+// With the color estimate beside it each channel of luminance's picture is that mean, too.
+TEST_F(RestirTest, VariateIsTheRunningMeanOfThePathTracer)
+{
+    constexpr int FRAMES = 24, MAX_CONFIDENCE = 16;
+    for (const char* name : {"Glossy", "SunnySky"}) {
+        const scene::Scene scene = sceneNamed(name);
+        const std::vector<Pixels> traced = pathTraced(scene, FRAMES);
+        for (const Method method : {Method::RestirPt, Method::GroupedRestir}) {
+            Settings settings = resting(method);
+            settings.color = Color::Variate;
+            settings.maxConfidence = MAX_CONFIDENCE;
+            Renderer renderer(device(), scene, settings);
+            for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
+            const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
+            for (size_t p = 0; p < picture.size(); ++p) {
+                glm::dvec3 expected(0);
+                for (int i = 0; i < FRAMES; ++i)
+                    expected += (glm::dvec3(traced[size_t(i)][p]) - expected) / double(std::min(i, MAX_CONFIDENCE) + 1);
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], expected[c], 2e-6 * expected[c]) << p;
+            }
+        }
+    }
+}
+
 // Reading color otherwise changes what is shown, and no reservoir: frames leave the same state behind, to the bit. And
-// since the weights are those that the sums add up, it changes no pixel's luminance (grouped reservoirs: neither r + g
-// nor b).
-TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
+// since the weights of weighted color are those that the sums add up, it changes no pixel's luminance (grouped
+// reservoirs: neither r + g nor b).
+TEST_F(RestirTest, ReadingColorKeepsReservoirsAndWeightedColorTheirTargets)
 {
     struct Case {
         Method method;
@@ -189,9 +213,9 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
         settings.temporal = c.temporal;
         settings.spatial = c.spatial;
         settings.spatialRadius = 4;
-        Pixels pictures[2];
-        std::vector<std::byte> histories[2], paths[2];
-        for (const Color color : {Color::Chosen, Color::Weighted}) {
+        Pixels pictures[3];
+        std::vector<std::byte> histories[3], paths[3];
+        for (const Color color : {Color::Chosen, Color::Weighted, Color::Variate}) {
             settings.color = color;
             Renderer renderer(device(), scene, settings, {.pipelines = pipelines});
             for (uint64_t frame = 0; frame < 4; ++frame) {
@@ -208,8 +232,8 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
             for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
         }
         ASSERT_FALSE(histories[0].empty() || paths[0].empty());
-        EXPECT_TRUE(histories[0] == histories[1] && paths[0] == paths[1]);
-        size_t otherColors = 0;
+        for (const size_t i : {1, 2}) EXPECT_TRUE(histories[0] == histories[i] && paths[0] == paths[i]) << i;
+        size_t otherColors = 0, estimatedColors = 0;
         for (size_t p = 0; p < pictures[0].size(); ++p) {
             const glm::dvec3 chosen(pictures[0][p]), weighted(pictures[1][p]);
             for (const glm::vec3& target : passes::estimatorOf(c.method).target) {
@@ -217,20 +241,25 @@ TEST_F(RestirTest, WeightedColorKeepsReservoirsAndTheirTargets)
                 EXPECT_NEAR(glm::dot(glm::dvec3(target), weighted), expected, 1e-5 * expected) << p;
             }
             otherColors += std::abs(chosen.r - weighted.r) > 0.001 * chosen.r;
+            estimatedColors += std::abs(pictures[2][p].r - weighted.r) > 0.001 * chosen.r;
         }
         EXPECT_GT(otherColors, pictures[0].size() / 10); // else nothing was proved
+        EXPECT_EQ(estimatedColors > pictures[0].size() / 10, c.temporal || c.spatial > 0);
     }
 }
 
 // Without reuse the last merge is that of a new tree's paths: what the path tracer adds.
-TEST_F(RestirTest, WeightedColorWithoutReuseIsThePathTracer)
+TEST_F(RestirTest, ColorOfAllPathsWithoutReuseIsThePathTracer)
 {
     const scene::Scene scene = sceneNamed("Glossy");
     const std::vector<Pixels> traced = pathTraced(scene, 2);
-    for (const Method method : {Method::RestirPt, Method::GroupedRestir}) {
+    for (const auto& [method, color] : {std::pair(Method::RestirPt, Color::Weighted),
+                                        {Method::RestirPt, Color::Variate},
+                                        {Method::GroupedRestir, Color::Weighted},
+                                        {Method::GroupedRestir, Color::Variate}}) {
         Settings settings = resting(method);
         settings.temporal = false;
-        settings.color = Color::Weighted;
+        settings.color = color;
         Renderer renderer(device(), scene, settings);
         renderer.renderFrame();
         renderer.renderFrame();

@@ -7,6 +7,7 @@
 #include "tests/support/test_scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdlib>
 #include <map>
@@ -34,7 +35,7 @@ std::vector<RestirCase> restirMatrix()
             for (const Reuse reuse : {Temporal, Spatial, Both})
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 4u), {8u, 10u}, {64u, 6u}, {4096u, 9u}})
-                        for (const passes::Color color : {Chosen, Weighted}) {
+                        for (const passes::Color color : {Chosen, Weighted, Variate}) {
                             if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                             cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color});
                         }
@@ -50,7 +51,7 @@ std::string RestirCase::name() const
     constexpr const char* REUSES[] = {"Temporal", "Spatial", "Both"};
     return std::string(scene) + METHODS[size_t(method)] + SHIFTS[size_t(shift)] + REUSES[size_t(reuse)] +
            (moves ? "Moving" : "Resting") + std::to_string(maxConfidence) +
-           (color == passes::Color::Chosen ? "Chosen" : "");
+           std::array{"Chosen", "", "Variate"}[size_t(color)];
 }
 
 void PrintTo(const RestirCase& c, std::ostream* os)
@@ -152,6 +153,11 @@ std::vector<RestirCase> restirCases()
         {"FarTriangle", RgbRestir, Reconnection, Both, false, 8},
         {"Dome", RgbRestir, Hybrid, Both, true, 8, 600},
         {"NormalMap", RestirPt, Hybrid, Both, true, 8},
+        {"Glossy", RestirPt, Hybrid, Both, true, 8, 200, 5, Variate},
+        {"AlphaBlend", RestirPt, Replay, Both, true, 8, 400, 5, Variate},
+        {"FrostedGlass", RestirPt, Hybrid, Both, true, 8, 800, 5, Variate},
+        {"Room", RestirPt, Reconnection, Both, true, 64, 450, 5, Variate},
+        {"ManyLamps", GroupedRestir, Hybrid, Temporal, true, 4096, 200, 5, Variate},
         {"Copies", RgbRestir, Hybrid, Both, true, 8},
         {"MaskedCopies", RestirPt, Reconnection, Both, true, 8},
         {"GlassCopies", RgbRestir, Hybrid, Both, false, 8},

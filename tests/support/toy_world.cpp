@@ -144,6 +144,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     add("Shifted", pixels * NEIGHBORS * shared::slotRows(count, one) * 16);
     add("Color", pixels * 16);
     add("MergedColor", pixels * 16);
+    add("HistoryColor", pixels * 16);
 }
 
 ToyRenderer::Stage& ToyRenderer::stage(const std::string& name, bool sameView)
@@ -176,6 +177,7 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
     frame.key0 = uint32_t(c.seed * 0x9e3779b9u);
     frame.key1 = uint32_t(c.seed >> 32) ^ 0x5bd1e995u;
     frame.maxConfidence = c.maxConfidence;
+    frame.colorConfidence = c.colorConfidence;
     frame.neighborCount = c.reuse == Reuse::Temporal ? 0 : NEIGHBORS;
     frame.neighborRadius = 3;
     for (size_t i = 0; i < estimator_.target.size(); ++i) {

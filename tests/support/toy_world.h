@@ -23,6 +23,7 @@ struct ToyCase {
     uint32_t frames = 6;        // rendered; the last one counts
     uint32_t runs = UINT32_MAX; // of the renderer's, at most; a multiple of shared::TOY_GROUP
     uint64_t seed = 1;
+    uint32_t colorConfidence = 1048576; // of Color::Variate
 
     std::string name() const;
 };

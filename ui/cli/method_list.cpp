@@ -1,6 +1,7 @@
 #include "ui/cli/method_list.h"
 
 #include "engine/base/files.h"
+#include "passes/estimator.h"
 #include "ui/cli/presets.h"
 #include "ui/cli/usage_error.h"
 
@@ -38,6 +39,19 @@ void applyWord(passes::Settings& settings, const std::string& word, bool first)
         passes::set(settings, word.substr(0, equals), word.substr(equals + 1));
 }
 
+// Every method with every way of reading its color that shows another picture.
+std::string allMethods()
+{
+    std::string list = "pt";
+    for (const passes::Estimator& estimator : passes::estimators())
+        for (const char* color : passes::WORDS_OF<passes::Color>) {
+            list += "," + estimator.name;
+            if (oneHot(estimator)) break;
+            list += std::string(":color=") + color;
+        }
+    return list;
+}
+
 // What must be the same for all: the picture that they estimate, and what the command itself decides.
 void requireComparable(const passes::Settings& settings, const passes::Settings& base, const std::string& entry)
 {
@@ -52,7 +66,7 @@ void requireComparable(const passes::Settings& settings, const passes::Settings&
 std::vector<passes::NamedMethod> readMethods(const std::string& list, const passes::Settings& base)
 {
     std::vector<passes::NamedMethod> methods;
-    for (const std::string& entry : split(list, ',')) {
+    for (const std::string& entry : split(list == "all" ? allMethods() : list, ',')) {
         passes::NamedMethod method{entry, base};
         const std::vector<std::string> words = split(entry, ':');
         try {
@@ -74,7 +88,8 @@ void addMethodsOption(CLI::App& app, std::string& list, const std::string& initi
     app.add_option(
            "--methods", list,
            "What is compared, separated by commas: METHOD, or a preset or its FILE.json, then :SHIFT or :NAME=VALUE as "
-           "often as needed, as in rgb-restir:replay:spatial=0. Other settings are common to all.")
+           "often as needed, as in rgb-restir:replay:spatial=0; or all: every method with every way of reading color. "
+           "Other settings are common to all.")
         ->option_text("LIST (" + initial + ")");
 }
 

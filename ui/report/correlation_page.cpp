@@ -94,8 +94,8 @@ Json curvesOf(const Correlation& correlation)
         if (correlation.sigma2)
             facts += fmt::format("Path tracer's variance per frame σ² = {} ({}). ", text(correlation.sigma2->mean),
                                  intervalText(*correlation.sigma2));
-        if (curve.plateau && passes::accumulates(curve.method.settings.method))
-            facts += "Plateau P = 0: every channel has a reservoir of its own. ";
+        if (curve.plateau && passes::accumulates(curve.method.settings))
+            facts += "Plateau P = 0: every channel is estimated for itself. ";
         else if (curve.plateau)
             facts += fmt::format("Plateau P = {} ({}). ", text(curve.plateau->mean), intervalText(*curve.plateau));
         if (const auto cross = crossover(correlation, curve))
@@ -140,7 +140,7 @@ Json floorsOf(const Correlation& correlation, const std::filesystem::path& direc
 {
     Json list = Json::array();
     for (const Curve& curve : correlation.curves) {
-        if (curve.floor.empty() || passes::accumulates(curve.method.settings.method)) continue;
+        if (curve.floor.empty() || passes::accumulates(curve.method.settings)) continue;
         std::string name = "color-noise-floor-";
         for (const char c : curve.method.name)
             name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
@@ -175,10 +175,10 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
 {
     std::vector<std::string> sentences;
     const Curve* one = nullptr;  // a reservoir that channels share
-    const Curve* each = nullptr; // reservoirs of their own
+    const Curve* each = nullptr; // channels that are estimated each for itself
     for (const Curve& curve : correlation.curves) {
         if (lastMeasured(curve) == nullptr) continue;
-        const Curve*& which = passes::accumulates(curve.method.settings.method) ? each : one;
+        const Curve*& which = passes::accumulates(curve.method.settings) ? each : one;
         if (which == nullptr) which = &curve;
     }
     if (one != nullptr && each != nullptr) {
@@ -229,11 +229,11 @@ std::vector<std::string> verdictsOf(const Correlation& correlation)
                       "something is wrong.",
                       count, worst));
     if (each != nullptr && passes::lawHolds(each->method.settings, correlation.sameView))
-        sentences.push_back("In this regime (resting camera, temporal reuse alone) RGB ReSTIR is progressive "
-                            "accumulation: frame M is the "
-                            "mean of the path tracer's first M frames, which a path tracer that adds up its frames "
-                            "gives for less time. "
-                            "RGB must earn its cost with spatial reuse and motion.");
+        sentences.push_back(fmt::format("In this regime (resting camera, temporal reuse alone) {} is progressive "
+                                        "accumulation: frame M is the mean of the path tracer's first M frames, which "
+                                        "a path tracer that adds up its frames gives for less time. It must earn its "
+                                        "cost with spatial reuse and motion.",
+                                        each->method.name));
     if (correlation.moving)
         sentences.push_back("The camera moves: figures follow surface points from frame to frame, and the law of the "
                             "resting camera says nothing about them.");

@@ -132,7 +132,7 @@ std::string sentenceOf(const WindowState& state, Side side)
     if (curve.plateau) text += fmt::format("; levels off at P = {:.2g}", curve.plateau->mean);
     if (settings.spatial > 0)
         text += "; no law is known with reuse in space";
-    else if (!curve.plateau && curve.points.size() > 1 && !passes::accumulates(settings.method))
+    else if (!curve.plateau && curve.points.size() > 1 && !passes::accumulates(settings))
         text += "; no law is known where pixels see other points in each frame";
     return text;
 }

@@ -82,7 +82,7 @@ class CorrelationStudy : public Study
     {
         // The path tracer's law alone is enough where it is the method's.
         const passes::Settings& s = method_.settings;
-        first_ = passes::lawHolds(s, correlator_.sameView()) && passes::accumulates(s.method) ? PLAIN : METHOD;
+        first_ = passes::lawHolds(s, correlator_.sameView()) && passes::accumulates(s) ? PLAIN : METHOD;
         begin(first_);
     }
 
@@ -145,7 +145,7 @@ class FloorStudy : public Study
   public:
     explicit FloorStudy(const Subject& subject) : side_(subject.side), settings_(passes::lawSettings(subject.settings))
     {
-        if (passes::accumulates(settings_.method)) return; // there is none
+        if (passes::accumulates(subject.settings)) return; // there is none
         settings_.seed = ~settings_.seed;
         const auto emitters = siblingOf(subject, passes::emissionSettings(settings_));
         emitters->renderFrame();

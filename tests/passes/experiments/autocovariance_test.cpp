@@ -105,6 +105,7 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
     for (const auto& [method, color] : {std::pair(Method::RgbRestir, Color::Chosen),
                                         {Method::RestirPt, Color::Chosen},
                                         {Method::RestirPt, Color::Weighted},
+                                        {Method::RestirPt, Color::Variate},
                                         {Method::GroupedRestir, Color::Chosen},
                                         {Method::GroupedRestir, Color::Weighted}}) {
         Settings s = settings(method);
@@ -117,7 +118,8 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
         ASSERT_EQ(points.size(), 7u);
         for (const passes::ChainPoint& point : points) {
             const statistics::Estimate measured = statistics::combine(std::span(&point.autocovariance, 1));
-            const passes::FrameLaw& single = color == Color::Weighted && point.frame == 2 ? plain : law;
+            const bool asTraced = color == Color::Variate || (color == Color::Weighted && point.frame == 2);
+            const passes::FrameLaw& single = asTraced ? plain : law;
             const statistics::BatchValue prediction = passes::predictedAutocovariance(single, color, point.frame);
             const statistics::Estimate predicted = statistics::combine(std::span(&prediction, 1));
             const statistics::Difference difference = statistics::compare(measured, predicted);
@@ -128,8 +130,10 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
             EXPECT_LT(difference.standardError, 0.06 * predicted.mean) << int(method) << " " << point.frame;
         }
         const double last = points.back().autocovariance.value;
-        if (method == Method::RgbRestir) {
-            EXPECT_NEAR(law.plateau.value, 0, 1e-12 * law.variance.value);
+        if (method == Method::RgbRestir || color == Color::Variate) {
+            if (method == Method::RgbRestir) {
+                EXPECT_NEAR(law.plateau.value, 0, 1e-12 * law.variance.value);
+            }
             const double slope = std::log2(last / points.front().autocovariance.value) / double(points.size() - 1);
             EXPECT_NEAR(slope, -1.0, 0.03);
         } else {

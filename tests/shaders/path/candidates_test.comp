@@ -43,6 +43,8 @@ void main()
     if (gl_GlobalInvocationID.x >= uint(trees.length())) return;
     Tree tree = trees[gl_GlobalInvocationID.x];
     vec3 emission;
-    offerCandidates(PathSeed(tree.seedFrame, tree.seedPixel), uvec2(tree.pixel % frame.width, tree.pixel / frame.width), emission);
+    vec3 albedo;
+    offerCandidates(PathSeed(tree.seedFrame, tree.seedPixel), uvec2(tree.pixel % frame.width, tree.pixel / frame.width), emission,
+                    albedo);
     countCandidates();
 }

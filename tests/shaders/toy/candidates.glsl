@@ -5,10 +5,11 @@ const vec3 TOY_EMISSION = vec3(0.5, 0.25, 0.125);
 
 void offer(PathSample y, vec3 f, float density);
 
-bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission)
+bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission, out vec3 albedo)
 {
     emission = TOY_EMISSION;
     ToyDomain d = toyDomain(pixel.y * frame.width + pixel.x, false);
+    albedo = d.albedo.rgb;
     if (d.seen == 0u) return false;
     for (uint pathId = 0u; pathId < TOY_PATHS; ++pathId) {
         float x = drawn(d, seed, pathId);

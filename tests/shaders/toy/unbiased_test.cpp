@@ -37,8 +37,8 @@ struct Row {
 
     std::string name() const
     {
-        constexpr const char* NAMES[] = {"Replay", "Reconnection", "Hybrid"};
-        std::string name = estimator.name + NAMES[size_t(shift)] + (color == Color::Weighted ? "Weighted" : "");
+        constexpr const char *NAMES[] = {"Replay", "Reconnection", "Hybrid"}, *COLORS[] = {"", "Weighted", "Variate"};
+        std::string name = estimator.name + NAMES[size_t(shift)] + COLORS[size_t(color)];
         std::erase(name, '-');
         return name;
     }
@@ -60,7 +60,7 @@ std::vector<Row> rows()
     std::vector<Row> list;
     for (const passes::Estimator& estimator : allEstimators())
         for (const Shift shift : SHIFTS)
-            for (const Color color : {Color::Chosen, Color::Weighted}) {
+            for (const Color color : {Color::Chosen, Color::Weighted, Color::Variate}) {
                 if (color != Color::Chosen && oneHot(estimator)) continue;
                 if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
                     list.push_back({estimator, shift, color});
@@ -82,7 +82,12 @@ struct Plan {
 Plan plan(const passes::Estimator& estimator)
 {
     using enum Reuse;
-    if (!asksAll()) return {.cases = {{Temporal, true, 8}, {Spatial, true, 1}, {Both, false, 4096}, {Both, true, 8}}};
+    if (!asksAll())
+        return {.cases = {{Temporal, true, 8},
+                          {Spatial, true, 1},
+                          {Both, false, 4096},
+                          {Both, true, 8},
+                          {.reuse = Both, .moves = true, .maxConfidence = 8, .colorConfidence = 2}}};
     // Few reservoirs leave channels to chance, which takes more runs: these fill lavapipe's largest binding. Without
     // reuse in space a quarter of them tells as much.
     const auto multiple = [](size_t runs) { return uint32_t(runs / shared::TOY_GROUP * shared::TOY_GROUP); };
@@ -133,8 +138,8 @@ TEST_F(ToyWorld, NeedsNoShiftsAtRest)
     }
 }
 
-// With targets of one channel each, all samples of a reservoir have one color: both ways of reading it show one
-// picture, for which the product compiles the cheaper one. With luminance they do not.
+// With targets of one channel each, all samples of a reservoir have one color: chosen and weighted color are
+// one picture, for which the product compiles the cheaper one. With luminance they do not.
 TEST_F(ToyWorld, OneHotTargetsShowOnePicture)
 {
     for (const passes::Method method : {passes::Method::RestirPt, passes::Method::RgbRestir}) {

@@ -44,6 +44,15 @@ TEST(MethodList, AppliesEachEntryOnTopOfTheCommonSettings)
     EXPECT_EQ(methods[3].settings.color, passes::Color::Chosen);
 }
 
+TEST(MethodList, AllIsEveryPictureThatThereIs)
+{
+    std::vector<std::string> names;
+    for (const auto& method : ui::readMethods("all", {})) names.push_back(method.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"pt", "restir-pt:color=chosen", "restir-pt:color=weighted",
+                                               "restir-pt:color=variate", "rgb-restir", "grouped-restir:color=chosen",
+                                               "grouped-restir:color=weighted", "grouped-restir:color=variate"}));
+}
+
 TEST(MethodList, TakesPresets)
 {
     const TemporaryDirectory directory;
