@@ -75,6 +75,14 @@ uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings)
     return uint32_t(std::min(most / pixels, MOST_LINES / settings.height));
 }
 
+bool fitStorageBindings(const gpu::Limits& limits, const Settings& settings, uint32_t runs)
+{
+    const uint64_t pixels = uint64_t{settings.width} * settings.height * runs;
+    return std::ranges::all_of(pixelBuffers(settings), [&](const PixelBuffer& row) {
+        return row.bytes * pixels <= limits.storageBindingBytes;
+    });
+}
+
 FrameBuffers::FrameBuffers(gpu::Device& device, const Settings& settings, uint32_t runs) : rows_(pixelBuffers(settings))
 {
     const uint64_t pixels = uint64_t{settings.width} * settings.height * runs;

@@ -27,6 +27,9 @@ double bytesPerReservoir(const Settings& settings);
 // How many pictures of these settings, one below the other, a device takes at once.
 uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings);
 
+// Whether storage bindings hold all buffers of so many pictures.
+bool fitStorageBindings(const gpu::Limits& limits, const Settings& settings, uint32_t runs);
+
 class FrameBuffers
 {
   public:

@@ -1,5 +1,7 @@
 #include "passes/frame_plan.h"
 
+#include "passes/frame_buffers.h"
+
 namespace passes
 {
 
@@ -8,7 +10,8 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
 {
     const gpu::Threads pixels = {settings.width, settings.height * runs};
     const gpu::Threads slots = {pixels.x * settings.spatial, pixels.y};
-    const Variant variant = scene.variant(settings);
+    Variant variant = scene.variant(settings);
+    variant.STORES_IN_STORAGE = fitStorageBindings(scene.device.limits(), settings, runs);
     Variant sameView = variant; // shifts between the two frames are identities, and left out
     sameView.SAME_VIEW = true;
     Variant moved = variant;

@@ -300,7 +300,7 @@ RenderStats Renderer::stats()
                       .sceneBytes = scene_->tables->bytes(),
                       .bytesPerPixel = double(bytesPerPixel(settings_)),
                       .reservoirBytes = bytesPerReservoir(settings_),
-                      .variant = describe(variant())};
+                      .variant = describe(plan_.front().variant)};
     for (const auto& [stage, sum] : milliseconds_)
         stats.stageMilliseconds[stage] = timedFrames_ > 0 ? sum / double(timedFrames_) : 0;
     const std::vector<uint32_t> words = device_.queue().readAs<uint32_t>(counters_);

@@ -21,9 +21,10 @@ VkBufferUsageFlags vulkanUsage(const DeviceState& device, Usage usage)
     VkBufferUsageFlags flags = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (has(usage, Usage::Storage)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     if (has(usage, Usage::Uniform)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-    if (has(usage, Usage::Table))
-        flags |= device.tablesAreTexelBuffers() ? VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT
-                                                : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    if (has(usage, Usage::Table)) {
+        flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT; // stages may write texel buffers so, too (shaders/lib/lanes.glsl)
+        if (device.tablesAreTexelBuffers()) flags |= VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+    }
     return flags;
 }
 

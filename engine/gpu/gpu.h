@@ -68,10 +68,9 @@ struct DeviceDescriptor {
 };
 
 enum class Usage : uint32_t {
-    Storage = 1, // shader reads and writes
-    Uniform = 2, // shader reads, uniform block
-    Table =
-        4, // shader reads uvec4 elements: TABLE() and FETCH() of shaders/lib/lanes.glsl. Texel buffer or storage buffer
+    Storage = 1,  // shader reads and writes
+    Uniform = 2,  // shader reads, uniform block
+    Table = 4,    // shader reads and writes rows, uvec4: a texel buffer or a storage buffer (shaders/lib/lanes.glsl)
     Readback = 8, // host reads; copy target
 };
 constexpr Usage operator|(Usage a, Usage b)

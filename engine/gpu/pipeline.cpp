@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"
 #include "engine/gpu/vulkan.h"
+#include "shaders/shared/tuning.h"
 
 #include <algorithm>
 #include <set>
@@ -24,17 +25,16 @@ void checkLimits(const DeviceState& device, const Reflection& shader, const std:
 
     // Tables do not count as storage buffers: in WebGPU, which has no texel buffers, they would be textures. Where they
     // are storage buffers, what this very device allows must hold all.
-    const auto count = [&](auto... kinds) {
-        return uint64_t(
-            std::ranges::count_if(shader.bindings, [&](const Binding& b) { return ((b.kind == kinds) || ...); }));
-    };
-    const uint64_t storage = count(Binding::Kind::Storage);
+    const auto storage = uint64_t(std::ranges::count(shader.bindings, Binding::Kind::Storage, &Binding::kind));
     if (storage > limits.storageBuffersPerStage)
         throw Error("Shader \"{}\" declares {} storage buffers, more than the limit of {}.", label, storage,
                     limits.storageBuffersPerStage);
-    const uint64_t all = count(Binding::Kind::Storage, Binding::Kind::Table);
+    uint64_t all = 0;
+    for (const Binding& binding : shader.bindings)
+        for (const auto& [number, type] : device.descriptorsOf(binding))
+            all += type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const uint32_t most = device.properties.limits.maxPerStageDescriptorStorageBuffers;
-    if (!device.tablesAreTexelBuffers() && all > most)
+    if (all > most)
         throw Error("Shader \"{}\" declares {} storage buffers and tables, more than the {} of \"{}\".", label, all,
                     most, deviceName);
 
@@ -73,7 +73,7 @@ void createLayout(PipelineState& pipeline)
     std::vector<std::map<uint32_t, VkDescriptorType>> sets;
     for (const Binding& binding : pipeline.bindings) {
         sets.resize(std::max<size_t>(sets.size(), binding.set + 1));
-        sets[binding.set][binding.binding] = device.descriptorType(binding.kind);
+        sets[binding.set].merge(device.descriptorsOf(binding));
     }
     for (const auto& set : sets) pipeline.setLayouts.push_back(device.setLayout(set));
     const VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -166,11 +166,15 @@ std::vector<uint32_t> DeviceState::loadShader(const std::string& shader) const
     return compileShader(directory / (shader + ".comp"), directory, texel);
 }
 
-VkDescriptorType DeviceState::descriptorType(Binding::Kind kind) const
+std::map<uint32_t, VkDescriptorType> DeviceState::descriptorsOf(const Binding& binding) const
 {
-    if (kind == Binding::Kind::Uniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    if (kind == Binding::Kind::Table && tablesAreTexelBuffers()) return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const uint32_t number = binding.binding;
+    if (binding.kind == Binding::Kind::Uniform) return {{number, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+    if (binding.kind == Binding::Kind::Storage || !tablesAreTexelBuffers())
+        return {{number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    if (!binding.writes) return {{number, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER}};
+    return {{number, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER},
+            {number + shared::STORES_BINDING, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
 }
 
 VkDescriptorSetLayout DeviceState::setLayout(const std::map<uint32_t, VkDescriptorType>& bindings)
@@ -208,6 +212,8 @@ ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& d
         pipeline->label = descriptor.label;
         pipeline->bindings = std::move(reflection.bindings);
         pipeline->workgroupSize = reflection.workgroupSize;
+        for (const Constant& constant : constants)
+            if (constant.name == "STORES_IN_STORAGE") pipeline->storesInStorage = constant.value != 0;
         createLayout(*pipeline);
         if (tuning.contraction == Tuning::Contraction::Forbidden) spirv = withoutContraction(spirv);
         if (tuning.shaders == Tuning::Shaders::Simplified) spirv = simplified(spirv, shader, reflection.constants);
@@ -232,7 +238,8 @@ BindGroup Device::createBindGroup(const BindGroupDescriptor& descriptor)
     group->layout = pipeline.setLayouts[descriptor.set];
 
     std::vector<VkDescriptorPoolSize> sizes;
-    for (const Binding& binding : declared) sizes.push_back({state_->descriptorType(binding.kind), 1});
+    for (const Binding& binding : declared)
+        for (const auto& [number, type] : state_->descriptorsOf(binding)) sizes.push_back({type, 1});
     const VkDescriptorPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                                  .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
                                                  .maxSets = 1,
@@ -255,15 +262,20 @@ BindGroup Device::createBindGroup(const BindGroupDescriptor& descriptor)
         if (!has(buffer.usage, usage))
             throw Error("Bind group \"{}\": buffer \"{}\" for \"{}\" lacks Usage::{}.", descriptor.label, buffer.label,
                         binding.name, nameOf(usage));
-        const VkDescriptorBufferInfo range = {buffer.buffer, 0, VK_WHOLE_SIZE};
-        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                            .dstSet = group->descriptors,
-                                            .dstBinding = binding.binding,
-                                            .descriptorCount = 1,
-                                            .descriptorType = state_->descriptorType(binding.kind),
-                                            .pBufferInfo = &range,
-                                            .pTexelBufferView = &buffer.view};
-        vkUpdateDescriptorSets(state_->device, 1, &write, 0, nullptr);
+        const uint64_t most = state_->properties.limits.maxStorageBufferRange;
+        const bool larger = buffer.size > most; // only tables are, and these are not written through a part of them
+        CHECK(!larger || !binding.writes || !pipeline.storesInStorage);
+        const VkDescriptorBufferInfo range = {buffer.buffer, 0, larger ? most : VK_WHOLE_SIZE};
+        for (const auto& [number, type] : state_->descriptorsOf(binding)) {
+            const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                                .dstSet = group->descriptors,
+                                                .dstBinding = number,
+                                                .descriptorCount = 1,
+                                                .descriptorType = type,
+                                                .pBufferInfo = &range,
+                                                .pTexelBufferView = &buffer.view};
+            vkUpdateDescriptorSets(state_->device, 1, &write, 0, nullptr);
+        }
         group->buffers[binding.binding] = buffer.buffer;
     }
     return BindGroup(std::move(group));

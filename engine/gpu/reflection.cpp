@@ -96,8 +96,9 @@ struct Inspector {
         for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_STORAGE_IMAGE))
             found.push_back(binding(r, Binding::Kind::Table));
         for (const auto& r : resources(all, SPVC_RESOURCE_TYPE_STORAGE_BUFFER)) {
+            if (tablesAreTexelBuffers && isTableBlock(r)) continue; // the other binding of a table that is written
             found.push_back(binding(r, Binding::Kind::Storage));
-            if (!tablesAreTexelBuffers && isTableBlock(r)) found.back().kind = Binding::Kind::Table;
+            if (isTableBlock(r)) found.back().kind = Binding::Kind::Table;
         }
         std::ranges::sort(found, {}, [](const Binding& b) { return std::pair(b.set, b.binding); });
         return found;

@@ -92,6 +92,7 @@ struct PipelineState : DeviceObject {
     VkPipeline pipeline = VK_NULL_HANDLE;
     std::array<uint32_t, 3> workgroupSize = {1, 1, 1};
     double compileSeconds = 0;
+    bool storesInStorage = false; // tables, where they are texel buffers (shaders/lib/lanes.glsl)
     // Of a workgroup, the last time; shared with the flights that will know it, which may outlive the pipeline.
     std::shared_ptr<std::optional<double>> groupMilliseconds = std::make_shared<std::optional<double>>();
 };
@@ -188,7 +189,7 @@ struct DeviceState {
     std::unique_ptr<BufferState> createBuffer(const BufferDescriptor& descriptor);
     std::vector<uint32_t> loadShader(const std::string& shader) const; // compiled here and now for hot reload
     VkDescriptorSetLayout setLayout(const std::map<uint32_t, VkDescriptorType>& bindings);
-    VkDescriptorType descriptorType(Binding::Kind kind) const;
+    std::map<uint32_t, VkDescriptorType> descriptorsOf(const Binding& binding) const; // by number
     bool tablesAreTexelBuffers() const { return physical.adapter.tuning.tables == Tuning::Tables::Texel; }
     VkCommandBuffer takeCommandBuffer();
     VkQueryPool takeQueryPage();

@@ -11,6 +11,8 @@
 
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
+#include "shared/tuning.h"
+
 // ---------------------------------------------------------------------------------------------------------------- loops
 // A loop that tests at its start runs its body once more than any lane needs. So loops test at their end, and the body must be
 // harmless where the condition does not hold at the start. SwiftShader compiles a nest of such loops wrongly: there, and where
@@ -31,20 +33,32 @@ layout(constant_id = 64) const bool LOOPS_TEST_AT_END = false; // set by the dev
 // A table is an array of uvec4. The build compiles every shader twice, with and without TABLES_IN_STORAGE, and gpu::Device picks
 // (Limits::tablesAreTexelBuffers). Texel buffers fetched as textures are 2.3 times as fast as storage buffers on lavapipe, and
 // a tenth faster still when loaded as images, which it inlines. Drivers with small limits use storage buffers.
+// Storing there is the other way round: through a storage buffer it takes half as long as through an image. So a table that
+// is written has two bindings to the same memory, and STORES_IN_STORAGE (shared/variant.h) says through which it is written:
+// through the image where pictures are larger than a storage binding.
 #ifdef TABLES_IN_STORAGE
 #define TABLE_OF(ACCESS, SET, BINDING, NAME)                                                                           \
     layout(set = SET, binding = BINDING, std430) ACCESS buffer NAME { uvec4 NAME##Elements[]; }
+#define TABLE_OUT(SET, BINDING, NAME) TABLE_OF(writeonly restrict, SET, BINDING, NAME)
+#define TABLE_INOUT(SET, BINDING, NAME) TABLE_OF(restrict, SET, BINDING, NAME)
 #define FETCH(NAME, INDEX) NAME##Elements[INDEX]
 #define STORE(NAME, INDEX, VALUE) NAME##Elements[INDEX] = VALUE
 #else
 #define TABLE_OF(ACCESS, SET, BINDING, NAME)                                                                           \
     layout(set = SET, binding = BINDING, rgba32ui) uniform ACCESS uimageBuffer NAME
+#define STORES_OF(SET, BINDING, NAME)                                                                                  \
+    layout(set = SET, binding = BINDING + STORES_BINDING, std430) writeonly buffer NAME##Stores                        \
+    {                                                                                                                  \
+        uvec4 NAME##StoresElements[];                                                                                  \
+    }
+#define TABLE_OUT(SET, BINDING, NAME) TABLE_OF(writeonly, SET, BINDING, NAME); STORES_OF(SET, BINDING, NAME)
+#define TABLE_INOUT(SET, BINDING, NAME) TABLE_OF(, SET, BINDING, NAME); STORES_OF(SET, BINDING, NAME)
 #define FETCH(NAME, INDEX) imageLoad(NAME, int(INDEX))
-#define STORE(NAME, INDEX, VALUE) imageStore(NAME, int(INDEX), VALUE)
+#define STORE(NAME, INDEX, VALUE)                                                                                      \
+    if (STORES_IN_STORAGE) NAME##StoresElements[INDEX] = VALUE;                                                        \
+    else imageStore(NAME, int(INDEX), VALUE)
 #endif
 #define TABLE(SET, BINDING, NAME) TABLE_OF(readonly restrict, SET, BINDING, NAME)
-#define TABLE_OUT(SET, BINDING, NAME) TABLE_OF(writeonly restrict, SET, BINDING, NAME)
-#define TABLE_INOUT(SET, BINDING, NAME) TABLE_OF(restrict, SET, BINDING, NAME)
 
 // Tables of 32-bit words, and rows that hold a color.
 #define FETCH_WORD(NAME, INDEX) FETCH(NAME, (INDEX) >> 2u)[(INDEX) & 3u]

@@ -46,7 +46,8 @@
       "control variate of an estimate beside them")                                                                    \
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")              \
     X(32, bool, TWO_WORLDS, false, "a scene that moves: as it is in this frame, and as it was in the one before")      \
-    X(33, bool, BETWEEN_WORLDS, false, "temporal reuse from a frame in which the scene was another")
+    X(33, bool, BETWEEN_WORLDS, false, "temporal reuse from a frame in which the scene was another")                   \
+    X(35, bool, STORES_IN_STORAGE, false, "tables written as storage buffers, which must hold them")
 
 SHARED_BEGIN
 

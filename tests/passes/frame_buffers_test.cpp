@@ -88,3 +88,16 @@ TEST(FrameBuffers, HoldAsManyRunsAsMemoryAndWorkgroupsAllow)
     replay.spatial = 0;
     EXPECT_EQ(passes::maxRuns(large, replay), 128u / 4);
 }
+
+TEST(FrameBuffers, FitStorageBindingsInSmallPictures)
+{
+    const auto fit = [](Method method, uint32_t width, uint32_t height, uint32_t runs = 1) {
+        return passes::fitStorageBindings(LAVAPIPE, settingsOf(method, Shift::Hybrid, width, height), runs);
+    };
+    EXPECT_TRUE(fit(Method::RgbRestir, 1280, 720));
+    EXPECT_FALSE(fit(Method::RgbRestir, 1920, 1080));
+    EXPECT_TRUE(fit(Method::Pt, 1920, 1080, 2));
+    EXPECT_FALSE(fit(Method::Pt, 1920, 1080, 3));
+    EXPECT_TRUE(fit(Method::Pt, 2048, 2048)); // to the last byte
+    EXPECT_FALSE(fit(Method::Pt, 2049, 2048));
+}

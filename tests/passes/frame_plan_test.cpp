@@ -8,6 +8,7 @@
 
 #include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
+#include "passes/frame_buffers.h"
 #include "tests/support/gpu_fixture.h"
 
 namespace
@@ -106,6 +107,19 @@ TEST_F(FramePlan, HasAThreadForEachPixelOfAllRunsAndForEachNeighbor)
         EXPECT_EQ(stage.threads.x, std::string(stage.shader) == "spatial_trace" ? 100u : 20u);
         EXPECT_EQ(stage.threads.y, 30u);
     }
+}
+
+TEST_F(FramePlan, WritesAsStorageBuffersWhatTheseHold)
+{
+    const passes::SceneOnDevice scene = cornell();
+    for (const uint32_t width : {64u, 16384u})
+        for (const uint32_t runs : {1u, 1000u}) {
+            const passes::Settings settings{.method = Method::RgbRestir, .width = width, .height = 256};
+            for (const passes::PlannedStage& stage : passes::framePlan(scene, settings, runs))
+                EXPECT_EQ(stage.variant.STORES_IN_STORAGE,
+                          passes::fitStorageBindings(device().limits(), settings, runs))
+                    << stage.shader;
+        }
 }
 
 TEST_F(FramePlan, TellsThoseWhoCompileAheadWhatAFrameAfterTheFirstRuns)

@@ -49,7 +49,7 @@ passes::StageList stagesFor(const Order& order, Side side, const passes::Rendere
     const passes::Settings settings = settingsOf(order, side);
     const bool cameraMoves = order.moving || followsPath(order), sceneMoves = order.playing && renderer.scene().moves();
     passes::StageList stages = passes::stagesOf(renderer.scene(), {&settings, 1}, cameraMoves, sceneMoves);
-    const passes::Variant variant = stages.front().second;
+    const passes::Variant variant = renderer.scene().variant(settings);
     const bool resamples = settings.method != passes::Method::Pt;
     if (order.inspect.reservoirs && resamples) stages.emplace_back("inspect", variant);
     if (order.inspect.shifts && resamples && settings.spatial > 0) stages.emplace_back("inspect_shifts", variant);

@@ -102,7 +102,8 @@ TEST_F(ShaderFolder, OnlyTablesMayBeImages)
 TEST_F(ShaderFolder, TooManyStorageBuffersAreAnError)
 {
     gpu::Device device = openDevice({.shaderDirectory = folder_.string()});
-    fs::copy(fs::path(TRICHROME_SOURCE_DIR) / "shaders/lib", folder_ / "lib");
+    for (const char* part : {"lib", "shared"})
+        fs::copy(fs::path(TRICHROME_SOURCE_DIR) / "shaders" / part, folder_ / part);
     const auto create = [&](int buffers) -> std::string {
         std::string declarations, sum;
         for (int i = 0; i < buffers; ++i) {

@@ -4,6 +4,7 @@
 #include "lib/lanes.glsl"
 #include "shared/types.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool STORES_IN_STORAGE = false;
 TABLE_INOUT(SET_PASS, 0, Rows);
 layout(set = SET_PASS, binding = 1, std430) readonly buffer Ends { uint first; uint last; uint count; uint padding; };
 
