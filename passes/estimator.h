@@ -28,7 +28,7 @@ const Estimator& estimatorOf(Method method);
 const std::vector<Estimator>& estimators();
 
 // Whether each target is one channel alone: then all samples of a reservoir have the same color per unit of target, and
-// every way of reading color shows the same picture.
+// nothing is left to chance that another way of reading color would mend.
 bool oneHot(const Estimator& estimator);
 
 // How this method's color has to be read: Chosen where Settings::color makes no difference.

@@ -41,6 +41,12 @@ std::pair<float, float> greenRange(const Image& image)
     return {float(low), float(high)};
 }
 
+// Has it lobes of a width?
+bool isRough(const Material& material)
+{
+    return material.specular > 0 || material.metallic > 0 || material.transmission > 0;
+}
+
 // As the shaders take it.
 Material plain(Material material)
 {
@@ -50,6 +56,7 @@ Material plain(Material material)
         material.roughness = 0;
         material.metallicRoughnessTexture.image = NONE;
     }
+    if (!isRough(material)) material.roughness = 1; // of lobes that are not there; at 0 they would be 0 times infinity
     return material;
 }
 
@@ -81,10 +88,14 @@ class Builder
     MaterialTables build(bool moves)
     {
         const std::vector<bool> used = usedMaterials(scene_);
-        for (size_t i = 0; i < scene_.materials.size(); ++i) addMaterial(plain(scene_.materials[i]), used[i]);
-        if (moves) {
-            for (const Motion::Paint& paint : scene_.motion->paints)
-                if (used[paint.material]) noteExtremes(scene_.materials[paint.material]);
+        std::vector<bool> painted(scene_.materials.size(), false);
+        if (moves)
+            for (const Motion::Paint& paint : scene_.motion->paints) painted[paint.material] = true;
+        for (size_t i = 0; i < scene_.materials.size(); ++i) {
+            Material material = plain(scene_.materials[i]);
+            if (!isRough(material) && !painted[i]) material.metallicRoughnessTexture.image = NONE;
+            addMaterial(material, used[i]);
+            if (painted[i] && used[i]) noteExtremes(scene_.materials[i]);
         }
         tables_.features.HAS_MANY_MATERIALS = scene_.materials.size() > 1;
         if (tables_.texels.empty()) tables_.texels.emplace_back(0);
@@ -176,11 +187,10 @@ class Builder
         if (material.unlit) return;
 
         const bool transmits = material.transmission > 0;
-        const bool specular = material.specular > 0 || material.metallic > 0;
         f.HAS_TRANSMISSION |= transmits;
         f.HAS_SOLID |= transmits && !material.thin;
-        f.HAS_SPECULAR |= specular;
-        if (!specular && !transmits) return;
+        f.HAS_SPECULAR |= material.specular > 0 || material.metallic > 0;
+        if (!isRough(material)) return;
         noteTexture(material.metallicRoughnessTexture, f.HAS_METALLIC_ROUGHNESS_TEXTURE);
         noteTexture(material.specularTexture, f.HAS_SPECULAR_TEXTURE);
         noteTexture(material.specularColorTexture, f.HAS_SPECULAR_TEXTURE);

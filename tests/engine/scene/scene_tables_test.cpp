@@ -66,6 +66,29 @@ void expectFits(const SceneTables& tables, const TableSizes& most)
     EXPECT_LE(tables.bvh.stats.depth, most.depth);
 }
 
+// What a material without lobes of a width says of their width is not asked. (Roughness 0 beside rough materials was a
+// microfacet distribution of width 0, and its product with the missing lobe's 0 no number.)
+TEST(SceneTables, RoughnessOfMissingLobesIsNotKept)
+{
+    Scene scene;
+    addQuad(scene, addMaterial(scene, diffuse("dull", {0.6f, 0.5f, 0.4f})), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+    addQuad(scene, addMaterial(scene, {.metallic = 0, .roughness = 0.5f}), {-1, 1, 1}, {2, 0, 0}, {0, 0, -2});
+    scene.images.push_back({.width = 1, .height = 1, .rgba = {0, 0, 0, 255}}); // green: times 0
+    Material& material = scene.materials.at(0);
+    material.specular = material.metallic = material.transmission = 0;
+    material.roughness = 1;
+    const SceneTables smooth = makeSceneTables(scene, ANY_SIZE);
+    material.roughness = 0;
+    material.metallicRoughnessTexture.image = 0;
+    const SceneTables rough = makeSceneTables(scene, ANY_SIZE);
+    EXPECT_EQ(rough.sceneData, smooth.sceneData);
+    EXPECT_EQ(missing(rough.features, smooth.features) + missing(smooth.features, rough.features), "");
+    EXPECT_TRUE(rough.features.HAS_ROUGH && !rough.features.HAS_DIRAC); // of the other material
+
+    material.metallic = 0.5f; // now it has one
+    EXPECT_TRUE(makeSceneTables(scene, ANY_SIZE).features.HAS_DIRAC);
+}
+
 // What pose() is asked for before anything has moved is the still scene, also after other poses.
 TEST(MovingTables, AtRestAreThoseOfTheStillScene)
 {
