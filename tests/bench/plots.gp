@@ -55,7 +55,7 @@ if (only eq '' || only eq 'autocovariance') {
 # How many times less error, with intervals: a row for each comparison.
 if (only eq '' || only eq 'ratios') {
     ratios = data.'/ratios.csv'
-    eval begin('ratios', 960, 560)
+    eval begin('ratios', 960, 700)
     set multiplot layout 2,1
     set logscale x
     set xrange [0.4:40]
@@ -69,8 +69,8 @@ if (only eq '' || only eq 'ratios') {
         set title (i == 1 ? 'The camera moves: a frame against a frame' : 'The camera moves: at equal time')
         set xlabel (i == 1 ? '' : 'times less relative MSE, with its 95% interval')
         condition = 'moving: equal '.(i == 1 ? 'frames' : 'time')
-        set yrange [(i == 1 ? 9.6 : 11.6):0.4]
-        has(k) = strcol(1) eq condition && strcol(7) ne '' && k == (strcol(5) eq 'pt' ? 1 : strstrt(strcol(5), 'weighted') ? 3 : 2)
+        set yrange [(i == 1 ? 11.6 : 16.6):0.4]
+        has(k) = strcol(1) eq condition && strcol(7) ne '' && (i == 1 || strcol(4) eq 'restir-pt variate') && k == (strcol(5) eq 'pt' ? 1 : strstrt(strcol(5), 'weighted') ? 3 : 2)
         label(i) = strcol(3).': '.strcol(4).' over '.strcol(5).', '.strcol(2).' repeats'
         n = 0
         m = 0
