@@ -52,7 +52,7 @@ struct Settings {
     float spatialRadius = 0; // pixels; 0: by the picture's height
     Color color = Color::Weighted;
     uint32_t colorConfidence = 1048576; // the most that history counts in variate's own estimate
-    uint32_t maxBounces = 5; // scattering events
+    uint32_t maxBounces = 5;            // scattering events
     PixelFilter pixelFilter = PixelFilter::Center;
     uint32_t width = 640;
     uint32_t height = 360;

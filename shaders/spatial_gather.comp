@@ -29,6 +29,31 @@ uint neighborOf(uint pixel, uint slot)
     return neighbor != NO_NEIGHBOR && neighborIn(neighbor, slot) == pixel ? neighbor : NO_NEIGHBOR;
 }
 
+float confidenceOfNeighbors(uint pixel)
+{
+    float sum = 0.0;
+    for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
+        uint neighbor = neighborOf(pixel, slot);
+        if (neighbor != NO_NEIGHBOR) sum += float(FETCH_WORD(Confidences, neighbor));
+    }
+    return sum;
+}
+
+void handOn(uint pixel, Reservoir r[MAX_RESERVOIRS], uint confidence)
+{
+    countTrees(r);
+    storeHistory(pixel, r);
+    historyConfidences[pixel] = confidence;
+}
+
+// What a pixel shows: what it sees directly, and `color`. With that as A, and the albedo, for the next frame.
+void show(uint pixel, vec3 color, uint albedo)
+{
+    if (COLOR_READING == COLOR_VARIATE)
+        STORE(HistoryColor, pixel, rowOf(finiteOrCounted(color, STAGE), albedo));
+    STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + color, STAGE)));
+}
+
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -36,12 +61,7 @@ void main()
     uint pixel = at.y * frame.width + at.x;
 
     float confidence = float(FETCH_WORD(Confidences, pixel)); // c_i
-    float neighborConfidence = 0.0;                            // M_n
-    for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
-        uint neighbor = neighborOf(pixel, slot);
-        if (neighbor != NO_NEIGHBOR) neighborConfidence += float(FETCH_WORD(Confidences, neighbor));
-    }
-    float total = confidence + neighborConfidence; // M
+    float neighborConfidence = confidenceOfNeighbors(pixel);  // M_n
     Reservoir r[MAX_RESERVOIRS];
     PairwiseMerge merge[MAX_RESERVOIRS];
     uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
@@ -50,21 +70,17 @@ void main()
         merge[c] = beginMerge(r[c], confidence, neighborConfidence);
         lender[c] = pixel;
     }
-    uvec4 ownColor = uvec4(0u); // A_i and the albedo
-    if (COLOR_READING != COLOR_CHOSEN) ownColor = FETCH(MergedColor, pixel);
+    uvec4 before = COLOR_READING != COLOR_CHOSEN ? FETCH(MergedColor, pixel) : uvec4(0u); // color of the merge before; albedo
     vec3 weighted = vec3(0.0); // sum of w chi over all that is merged; of COLOR_VARIATE: A' - A_i
     for (uint slot = 0u; slot < frame.neighborCount; ++slot) {
         uint neighbor = neighborOf(pixel, slot);
         if (neighbor == NO_NEIGHBOR) continue;
-        float otherConfidence = float(FETCH_WORD(Confidences, neighbor));    // c_j
-        float u = decisionNumber(pixel, STREAM_SPATIAL + slot);              // one for all reservoirs
-        float beta = otherConfidence * neighborConfidence / (total * total); // beta_j: eps_j of equal domains
-        vec3 k = vec3(1.0);
-        if (COLOR_READING == COLOR_VARIATE) {
-            uvec4 otherColor = FETCH(MergedColor, neighbor);
-            k = albedoRatio(ownColor.w, otherColor.w);
-            weighted += beta * (k * uintBitsToFloat(otherColor.xyz) - uintBitsToFloat(ownColor.xyz));
-        }
+        float otherConfidence = float(FETCH_WORD(Confidences, neighbor)); // c_j
+        float u = decisionNumber(pixel, STREAM_SPATIAL + slot);           // one for all reservoirs
+        float beta = equalShare(merge[0], otherConfidence);               // beta_j
+        uvec4 otherColor = COLOR_READING == COLOR_VARIATE ? FETCH(MergedColor, neighbor) : uvec4(0u); // A_j
+        vec3 k = albedoRatio(before.w, otherColor.w);
+        if (COLOR_READING == COLOR_VARIATE) weighted += beta * (k * colorOfRow(otherColor) - colorOfRow(before));
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             Reservoir other = loadReservoirsHead(neighbor, c);
             vec3 fHere = shiftedFrom(neighbor, slot, c);
@@ -85,8 +101,7 @@ void main()
     float u = decisionNumber(pixel, STREAM_SPATIAL + frame.neighborCount);
     vec3 color = vec3(0.0); // of the chosen samples
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
-        if (COLOR_READING == COLOR_WEIGHTED)
-            weighted += (r[c].weightSum * merge[c].kept + r[c].carry) * colorOf(c, r[c].f);
+        if (COLOR_READING == COLOR_WEIGHTED) weighted += (r[c].weightSum * merge[c].kept + r[c].carry) * colorOf(c, r[c].f);
         if (endMerge(merge[c], r[c], u)) {
             r[c].chosen = merge[c].neighbors.chosen;
             r[c].f = merge[c].neighbors.f;
@@ -96,15 +111,9 @@ void main()
         r[c].chosen.reconnection = loadReservoirsPath(lender[c], c);
         color += resolved(c, r[c]);
     }
-    countTrees(r);
-    storeHistory(pixel, r);
-    historyConfidences[pixel] = uint(confidence + neighborConfidence);
+    handOn(pixel, r, uint(confidence + neighborConfidence));
     // Without neighbors nothing was merged here: the merge before stands.
-    if (COLOR_READING != COLOR_CHOSEN) {
-        color = uintBitsToFloat(ownColor.xyz);
-        if (neighborConfidence > 0.0) color = COLOR_READING == COLOR_VARIATE ? color + weighted : weighted;
-    }
-    if (COLOR_READING == COLOR_VARIATE)
-        STORE(HistoryColor, pixel, uvec4(floatBitsToUint(finiteOrCounted(color, STAGE)), ownColor.w));
-    STORE(Color, pixel, rowOf(finiteOrCounted(colorIn(Color, pixel) + color, STAGE)));
+    if (COLOR_READING == COLOR_VARIATE) color = colorOfRow(before) + weighted;
+    if (COLOR_READING == COLOR_WEIGHTED) color = neighborConfidence > 0.0 ? weighted : colorOfRow(before);
+    show(pixel, color, before.w);
 }

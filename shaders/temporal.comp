@@ -45,6 +45,13 @@ void shiftBothWays(uint pixel, Domain here, uint previousPixel, Domain there, ou
     LOOP_END(way < 2u)
 }
 
+// A' = beta_h (k A_h + D) + beta_n A_n, in complement form.
+vec3 mergedEstimate(vec3 history, vec3 difference, vec3 news, uint confidence, uint historyConfidence, uvec3 random)
+{
+    float newShare = share(float(confidence), 1.0, float(min(historyConfidence, frame.colorConfidence))); // beta_n
+    return roundedAtRandom(history, newShare * (news - history) + (1.0 - newShare) * difference, random);
+}
+
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
@@ -71,15 +78,10 @@ void main()
     uint confidence = confidences[pixel];
     uvec4 random = decisionRandom(pixel, STREAM_TEMPORAL);
     float u = decisionFloat(random.x); // one for all reservoirs
-    vec3 color = vec3(0.0);            // COLOR_WEIGHTED: w_n chi(x) + w_h chi(T y); COLOR_VARIATE: D of the history
-    uvec4 newColor = uvec4(0u);        // A_n and the albedo
-    uvec4 oldColor = uvec4(0u);        // A_h, likewise
-    vec3 k = vec3(1.0);
-    if (COLOR_READING == COLOR_VARIATE) {
-        newColor = FETCH(MergedColor, pixel);
-        oldColor = FETCH(HistoryColor, previousPixel);
-        if (!SAME_VIEW) k = albedoRatio(newColor.w, oldColor.w);
-    }
+    vec3 color = vec3(0.0); // COLOR_WEIGHTED: w_n chi(x) + w_h chi(T y); COLOR_VARIATE: D of the history
+    uvec4 newColor = COLOR_READING == COLOR_VARIATE ? FETCH(MergedColor, pixel) : uvec4(0u);
+    uvec4 oldColor = COLOR_READING == COLOR_VARIATE ? FETCH(HistoryColor, previousPixel) : uvec4(0u);
+    vec3 k = albedoRatio(newColor.w, oldColor.w);
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (SAME_VIEW) { // every pixel sees what it saw, all shifts are identities
             fHere[c] = old[c].f;
@@ -99,14 +101,9 @@ void main()
         r[c].chosen = old[c].chosen;
         r[c].f = fHere[c];
     }
-    if (COLOR_READING == COLOR_VARIATE) {
-        float newShare = share(float(confidence), 1.0, float(min(historyConfidence, frame.colorConfidence))); // beta_n
-        vec3 before = k * uintBitsToFloat(oldColor.xyz);
-        vec3 news = uintBitsToFloat(newColor.xyz) - before;
-        color = roundedAtRandom(before, newShare * news + (1.0 - newShare) * color, random.yzw);
-    }
-    if (COLOR_READING != COLOR_CHOSEN)
-        STORE(MergedColor, pixel, uvec4(floatBitsToUint(finiteOrCounted(color, STAGE)), newColor.w));
+    if (COLOR_READING == COLOR_VARIATE)
+        color = mergedEstimate(k * colorOfRow(oldColor), color, colorOfRow(newColor), confidence, historyConfidence, random.yzw);
+    if (COLOR_READING != COLOR_CHOSEN) STORE(MergedColor, pixel, rowOf(finiteOrCounted(color, STAGE), newColor.w));
     storeReservoirs(pixel, r);
     confidences[pixel] = confidence + historyConfidence;
     countShifts();

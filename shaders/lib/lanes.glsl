@@ -62,8 +62,10 @@ layout(constant_id = 64) const bool LOOPS_TEST_AT_END = false; // set by the dev
 
 // Tables of 32-bit words, and rows that hold a color.
 #define FETCH_WORD(NAME, INDEX) FETCH(NAME, (INDEX) >> 2u)[(INDEX) & 3u]
-#define colorIn(NAME, ROW) uintBitsToFloat(FETCH(NAME, ROW).xyz)
-uvec4 rowOf(vec3 color) { return uvec4(floatBitsToUint(color), 0u); }
+uvec4 rowOf(vec3 color, uint word) { return uvec4(floatBitsToUint(color), word); }
+uvec4 rowOf(vec3 color) { return rowOf(color, 0u); }
+vec3 colorOfRow(uvec4 row) { return uintBitsToFloat(row.xyz); }
+#define colorIn(NAME, ROW) colorOfRow(FETCH(NAME, ROW))
 
 // ----------------------------------------------------------------------------------------------------------- arithmetic
 // For `precise` variables: one instruction each. min and max, which must heed NaN, take several.

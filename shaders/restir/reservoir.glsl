@@ -106,6 +106,13 @@ PairwiseMerge beginMerge(Reservoir own, float confidence, float neighborConfiden
     return PairwiseMerge(confidence, neighborConfidence, EMPTY, own.carry, 1.0);
 }
 
+// eps_j where domains are equal.
+float equalShare(PairwiseMerge m, float confidence)
+{
+    float total = m.confidence + m.neighborConfidence; // M
+    return confidence * m.neighborConfidence / (total * total);
+}
+
 // True when the neighbor's sample is chosen among the neighbors': the caller replaces sample and f of m.neighbors. `weight`: w_j.
 bool mergeNeighbor(inout PairwiseMerge m, Reservoir own, Reservoir neighbor, float a, float b, float confidence, float u,
                    out precise float weight)

@@ -26,14 +26,14 @@ struct FrameUniform {
     uint frame;  // index since the last reset; with the pixel it is the path's seed
     uint key0;   // of the random numbers: a hash of the user's seed
     uint key1;
-    uint slice;                   // which half of Surfaces is this frame's: 0 or 1
-    uint previousSlice;           // and which is the previous frame's: the same one while the camera rests
-    uint maxConfidence;           // M_c, frames
-    uint neighborCount;           // K
-    float neighborRadius;         // pixels
-    uint runHeight;               // pixels, of one run's picture: independent runs lie below each other
-    uint world;                   // which of the scene's two worlds this frame shows: 0 or 1
-    uint colorConfidence;         // the most that history counts in COLOR_VARIATE's estimate, frames
+    uint slice;           // which half of Surfaces is this frame's: 0 or 1
+    uint previousSlice;   // and which is the previous frame's: the same one while the camera rests
+    uint maxConfidence;   // M_c, frames
+    uint neighborCount;   // K
+    float neighborRadius; // pixels
+    uint runHeight;       // pixels, of one run's picture: independent runs lie below each other
+    uint world;           // which of the scene's two worlds this frame shows: 0 or 1
+    uint colorConfidence; // the most that history counts in COLOR_VARIATE's estimate, frames
     uint padding0;
     uint padding1;
     uint padding2;

@@ -42,7 +42,7 @@
     X(27, uint, STACK_SIZE, 32u, "entries of the traversal stack, for the depth of the scene's tree")                  \
     X(28, bool, STACK_IN_REGISTERS, false, "traversal stack in registers: for drivers that run lanes under masks")     \
     X(30, uint, COLOR_READING, 0u,                                                                                     \
-      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last, 2 as "   \
+      "how color is read from reservoirs: 0 off the chosen samples, 1 weighted over all that were merged last, 2 as "  \
       "control variate of an estimate beside them")                                                                    \
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")              \
     X(32, bool, TWO_WORLDS, false, "a scene that moves: as it is in this frame, and as it was in the one before")      \

@@ -55,13 +55,13 @@ const std::vector<PlantedError>& plantedErrors()
          "allPaths += canonical[0].weightSum > 0.0 ? f : 2.0 * f;"},
         // What the color estimate beside reservoirs alone shows.
         {"EstimateClamped", "temporal.comp",
-         "color = roundedAtRandom(before, newShare * news + (1.0 - newShare) * color, random.yzw);",
-         "color = max(vec3(0.0), before + newShare * news + (1.0 - newShare) * color);"},
+         "roundedAtRandom(history, newShare * (news - history) + (1.0 - newShare) * difference, random)",
+         "max(vec3(0.0), history + newShare * (news - history) + (1.0 - newShare) * difference)"},
         {"EstimateRatioFromTheSample", "temporal.comp", "albedoRatio(newColor.w, oldColor.w)",
          "min(fHere[0] / max(old[0].f, 1e-6), 2.0)"},
-        {"EstimateShareKnowsTheSamples", "temporal.comp", "        color = roundedAtRandom(before,",
-         "        if (news.x > 0.0) newShare *= 0.5;\n"
-         "        color = roundedAtRandom(before,"},
+        {"EstimateShareKnowsTheSamples", "temporal.comp", "    return roundedAtRandom(history,",
+         "    if (news.x > history.x) newShare *= 0.5;\n"
+         "    return roundedAtRandom(history,"},
         {"EstimateRatioForgottenOnce", "temporal.comp", "vec2(confidence, historyConfidence), k)",
          "vec2(confidence, historyConfidence), vec3(1.0))"},
         {"EstimateFromTheHistorysDomain", "restir/estimator.glsl",
@@ -69,8 +69,8 @@ const std::vector<PlantedError>& plantedErrors()
          "restTimes(confidence.x, rhoThere, confidence.y) * colorOf(c, there.f)"},
         {"EstimateBySwappedMis", "restir/estimator.glsl", "rest(confidence.y, rho, confidence.x) * colorOf(c, here.f)",
          "rest(confidence.x, rho, confidence.y) * colorOf(c, here.f)"},
-        {"EstimateOfNeighborsTimes1_02", "spatial_gather.comp", "weighted += beta * (k * uintBitsToFloat",
-         "weighted += beta * (1.02 * k * uintBitsToFloat"},
+        {"EstimateOfNeighborsTimes1_02", "spatial_gather.comp", "weighted += beta * (k * colorOfRow",
+         "weighted += beta * (1.02 * k * colorOfRow"},
         {"EstimateOfTenthsOfTheDifference", "spatial_gather.comp", "weighted += beta * colorDifference",
          "weighted += 0.9 * beta * colorDifference"},
         // Of these the toy knows nothing: they are in what it stands for.

@@ -12,8 +12,9 @@ namespace ui
 {
 
 // "pt,restir-pt:replay,rgb-restir:spatial=0:max-confidence=64,preset.json": each entry is a method or a preset, then a
-// shift or NAME=VALUE as often as needed, on top of `base`; "all": every method with every way of reading color. Throws UsageError: anything else, an entry twice, settings
-// that change what is seen (size, camera, bounces, filter, environment) or how long it is rendered.
+// shift or NAME=VALUE as often as needed, on top of `base`; "all": every method with every way of reading color. Throws
+// UsageError: anything else, an entry twice, settings that change what is seen (size, camera, bounces, filter,
+// environment) or how long it is rendered.
 std::vector<passes::NamedMethod> readMethods(const std::string& list, const passes::Settings& base);
 
 // --methods into `list`, which must live until it is read.
