@@ -98,10 +98,11 @@ TEST(Checkpoint, NamesWhatIsDifferent)
 class CheckpointOfRenderer : public RendererFixture
 {
   protected:
-    static Settings settings(Method method)
+    static Settings settings(Method method, passes::Color color = passes::Color::Weighted)
     {
         Settings s;
         s.method = method;
+        s.color = color;
         s.width = 24;
         s.height = 20;
         s.maxBounces = 3;
@@ -130,17 +131,18 @@ TEST_F(CheckpointOfRenderer, GoesOnToTheSameBitsWhetherTheCameraRestsOrMoves)
 {
     const scene::Scene scene = glossy();
     const TemporaryDirectory directory;
-    using Case = std::pair<Method, double>;
-    for (const auto& [method, orbit] :
-         {Case{Method::Pt, 2.0}, Case{Method::RestirPt, 0.0}, Case{Method::RgbRestir, 2.0}}) {
-        SCOPED_TRACE(fmt::format("method {}, {} degrees", int(method), orbit));
+    using Case = std::pair<Settings, double>;
+    for (const auto& [asked, orbit] :
+         {Case{settings(Method::Pt), 2.0}, Case{settings(Method::RestirPt), 0.0},
+          Case{settings(Method::RestirPt, passes::Color::Variate), 2.0}, Case{settings(Method::RgbRestir), 2.0}}) {
+        SCOPED_TRACE(fmt::format("method {}, color {}, {} degrees", int(asked.method), int(asked.color), orbit));
         const passes::CameraAt cameraAt = orbit > 0 ? passes::cameraOrbit(scene.cameras.at(0), orbit) : nullptr;
-        Renderer whole(device(), scene, settings(method));
+        Renderer whole(device(), scene, asked);
         render(whole, cameraAt, 3);
         passes::write(directory / "x.ckpt", {.state = whole.save()}); // saving disturbs nothing
         render(whole, cameraAt, 5);
 
-        Renderer second(device(), scene, settings(method));
+        Renderer second(device(), scene, asked);
         EXPECT_EQ(second.scene().fingerprint(), whole.scene().fingerprint());
         render(second, cameraAt, 2); // what was there before is forgotten
         second.restore(passes::readCheckpoint(directory / "x.ckpt").state);
@@ -158,7 +160,7 @@ TEST_F(CheckpointOfRenderer, ForgedContentsDoNoHarm)
 {
     const scene::Scene scene = glossy();
     for (const Method method : {Method::RestirPt, Method::RgbRestir}) {
-        Renderer renderer(device(), scene, settings(method));
+        Renderer renderer(device(), scene, settings(method, passes::Color::Variate));
         render(renderer, nullptr, 1);
         passes::RendererState state = renderer.save();
         std::mt19937 random(7);
