@@ -23,7 +23,7 @@ std::vector<PixelBuffer> pixelBuffers(const Settings& settings)
     const uint32_t count = resamples ? uint32_t(estimatorOf(settings.method).target.size()) : 0;
     const bool one = resamples && oneHot(estimatorOf(settings.method));
     const uint64_t heads = resamples ? shared::headRows(count, one) * ROW : 0;
-    const uint64_t paths = settings.shift == Shift::Replay ? 0 : count * shared::pathRows(one) * ROW;
+    const uint64_t paths = settings.shift == Shift::Replay ? 0 : uint64_t{count} * shared::pathRows(one) * ROW;
     const uint64_t confidence = resamples ? WORD : 0;
     const uint64_t shifted = resamples ? settings.spatial * shared::slotRows(count, one) * ROW : 0;
     const uint64_t merged = colorReading(settings) != Color::Chosen ? ROW : 0;

@@ -232,7 +232,7 @@ TEST_F(RestirTest, ReadingColorKeepsReservoirsAndWeightedColorTheirTargets)
             for (const auto& [stage, count] : renderer.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
         }
         ASSERT_FALSE(histories[0].empty() || paths[0].empty());
-        for (const size_t i : {1, 2}) EXPECT_TRUE(histories[0] == histories[i] && paths[0] == paths[i]) << i;
+        for (size_t i = 1; i < 3; ++i) EXPECT_TRUE(histories[0] == histories[i] && paths[0] == paths[i]) << i;
         size_t otherColors = 0, estimatedColors = 0;
         for (size_t p = 0; p < pictures[0].size(); ++p) {
             const glm::dvec3 chosen(pictures[0][p]), weighted(pictures[1][p]);
