@@ -23,7 +23,7 @@ vec3 resolved(uint c, Reservoir r) { return colorOf(c, r.f) * (r.weightSum + r.c
 //     A' = sum over merged j of beta_j (k_j A_j + D_j),   D_j an estimate of color here - k_j color there
 // Any beta (of sum 1) and k do that depend on no sample: beta_j is a share of the confidences, k_j the ratio of albedos, here
 // over there. Between equal domains D is 0, and A' the mean of all A_j. (After ReSTCV, SIGGRAPH 2026; what was compared is in
-// docs/DECISIONS.md, "How color is read".)
+// docs/DECISIONS.md, "Color beside the reservoirs".)
 
 // D, of what reservoir c of this pixel (with its sample moved there) and that of another (moved here) know, each with its MIS
 // weight. `confidence` is what they count for, here and there.
