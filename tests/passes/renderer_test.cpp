@@ -251,6 +251,7 @@ TEST_F(RendererTest, DoesWhatTheChangeOfEachKnobSays)
         {"spatial", "1"},
         {"spatial-radius", "4"},
         {"color", "chosen"},
+        {"color-confidence", "3"},
         {"max-bounces", "1"},
         {"pixel-filter", "box"},
         {"size", fmt::format("{}x{}", 2 * base.width, 2 * base.height)}, // the camera stays, and with it the aspect

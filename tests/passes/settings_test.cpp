@@ -27,6 +27,7 @@ Settings unusual()
     s.spatial = 8;
     s.spatialRadius = 0.1f + 31;
     s.color = passes::Color::Chosen;
+    s.colorConfidence = 1048575;
     s.maxBounces = 0;
     s.pixelFilter = passes::PixelFilter::Box;
     s.width = 17;
