@@ -22,10 +22,10 @@ std::vector<PixelBuffer> pixelBuffers(const Settings& settings)
     const bool resamples = settings.method != Method::Pt;
     const uint32_t count = resamples ? uint32_t(estimatorOf(settings.method).target.size()) : 0;
     const bool one = resamples && oneHot(estimatorOf(settings.method));
-    const uint64_t heads = resamples ? shared::headRows(count, one) * ROW : 0;
+    const uint64_t heads = resamples ? uint64_t{shared::headRows(count, one)} * ROW : 0;
     const uint64_t paths = settings.shift == Shift::Replay ? 0 : uint64_t{count} * shared::pathRows(one) * ROW;
     const uint64_t confidence = resamples ? WORD : 0;
-    const uint64_t shifted = resamples ? settings.spatial * shared::slotRows(count, one) * ROW : 0;
+    const uint64_t shifted = resamples ? uint64_t{settings.spatial} * shared::slotRows(count, one) * ROW : 0;
     const uint64_t merged = colorReading(settings) != Color::Chosen ? ROW : 0;
     const uint64_t variate = colorReading(settings) == Color::Variate ? ROW : 0;
     return {
@@ -63,7 +63,7 @@ double bytesPerReservoir(const Settings& settings)
 
 uint32_t maxRuns(const gpu::Limits& limits, const Settings& settings)
 {
-    constexpr uint64_t MOST_LINES = 65535 * 8; // of a picture: workgroups along an axis that any device takes
+    constexpr uint64_t MOST_LINES = uint64_t{65535} * 8; // of a picture: workgroups along an axis that any device takes
     const uint64_t pixels = uint64_t{settings.width} * settings.height;
     uint64_t most = std::min(limits.memoryBytes / 4 / bytesPerPixel(settings), uint64_t{UINT32_MAX});
     for (const PixelBuffer& row : pixelBuffers(settings)) {
