@@ -42,7 +42,8 @@ void main()
     vec3 albedo;
     bool seen = offerCandidates(PathSeed(frame.frame, pixel), at, emission, albedo);
     STORE(Color, pixel, rowOf(finiteOrCounted(emission, STAGE)));
-    if (COLOR_READING != COLOR_CHOSEN) STORE(MergedColor, pixel, rowOf(allPaths, packedAlbedo(albedo)));
+    uint word = COLOR_READING == COLOR_VARIATE ? packedAlbedo(finiteOrCounted(albedo, STAGE)) : 0u;
+    if (COLOR_READING != COLOR_CHOSEN) STORE(MergedColor, pixel, rowOf(allPaths, word));
     storeReservoirs(pixel, canonical);
     confidences[pixel] = seen ? 1u : 0u; // also when no path carried light: that is news too
     countCandidates();

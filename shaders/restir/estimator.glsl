@@ -38,7 +38,8 @@ vec3 colorDifference(uint c, Reservoir here, vec3 fThere, Reservoir there, vec3 
     return here.weightSum * byOwn + there.weightSum * byOther;
 }
 
-// The albedo of what a pixel sees, as a word beside A: squares of 10 bits, since it is dark ones that need steps.
+// The albedo of what a pixel sees, as a word beside A: squares of 10 bits, since it is dark ones that need steps. (Beyond
+// [0, 1] there is none. The ratio is a coefficient that knows no sample, so what it loses here biases nothing.)
 uint packedAlbedo(vec3 albedo)
 {
     uvec3 steps = uvec3(1023.0 * sqrt(clamp(albedo, 0.0, 1.0)) + 0.5);

@@ -91,6 +91,15 @@ glm::dvec3 meanOver(const std::vector<Pixels>& frames, size_t count, size_t pixe
     return sum / double(count);
 }
 
+// Exponential beyond M_c: S_n = S_(n-1) + (F_n - S_(n-1)) / (M_c + 1).
+glm::dvec3 cappedMeanOver(const std::vector<Pixels>& frames, size_t maxConfidence, size_t pixel)
+{
+    glm::dvec3 mean(0);
+    for (size_t i = 0; i < frames.size(); ++i)
+        mean += (glm::dvec3(frames[i][pixel]) - mean) / double(std::min(i, maxConfidence) + 1);
+    return mean;
+}
+
 // A color of every kind a scene holds.
 void recolor(scene::Scene& scene, const std::function<glm::vec3(glm::vec3)>& change)
 {
@@ -184,9 +193,7 @@ TEST_F(RestirTest, VariateIsTheRunningMeanOfThePathTracer)
             for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
             const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
             for (size_t p = 0; p < picture.size(); ++p) {
-                glm::dvec3 expected(0);
-                for (int i = 0; i < FRAMES; ++i)
-                    expected += (glm::dvec3(traced[size_t(i)][p]) - expected) / double(std::min(i, MAX_CONFIDENCE) + 1);
+                const glm::dvec3 expected = cappedMeanOver(traced, MAX_CONFIDENCE, p);
                 for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], expected[c], 2e-6 * expected[c]) << p;
             }
         }
@@ -292,7 +299,7 @@ TEST_F(RestirTest, WeightedColorAtRestIsTheMeanOfTheNewSampleAndTheOldPicture)
         }
 }
 
-// Beyond M_c the mean becomes an exponential one: S_n = S_(n-1) + (F_n - S_(n-1)) / (M_c + 1).
+// Beyond M_c the mean becomes an exponential one.
 TEST_F(RestirTest, ConfidenceIsCapped)
 {
     constexpr int FRAMES = 20;
@@ -305,9 +312,7 @@ TEST_F(RestirTest, ConfidenceIsCapped)
     for (int i = 0; i < FRAMES; ++i) renderer.renderFrame();
     const Pixels picture = renderer.read(passes::LAST_FRAME).pixels;
     for (size_t p = 0; p < picture.size(); ++p) {
-        glm::dvec3 expected(0);
-        for (int i = 0; i < FRAMES; ++i)
-            expected += (glm::dvec3(traced[size_t(i)][p]) - expected) / double(std::min(i, MAX_CONFIDENCE) + 1);
+        const glm::dvec3 expected = cappedMeanOver(traced, MAX_CONFIDENCE, p);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture[p][c], expected[c], 1e-4 * expected[c]) << p;
     }
 }
