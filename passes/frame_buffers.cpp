@@ -22,10 +22,11 @@ std::vector<PixelBuffer> pixelBuffers(const Settings& settings)
     const bool resamples = settings.method != Method::Pt;
     const uint32_t count = resamples ? uint32_t(estimatorOf(settings.method).target.size()) : 0;
     const bool one = resamples && oneHot(estimatorOf(settings.method));
-    const uint64_t heads = resamples ? uint64_t{shared::headRows(count, one)} * ROW : 0;
+    const bool densities = settings.mutate != Mutate::Off && settings.shift != Shift::Replay;
+    const uint64_t heads = resamples ? uint64_t{shared::headRows(count, one, densities)} * ROW : 0;
     const uint64_t paths = settings.shift == Shift::Replay ? 0 : uint64_t{count} * shared::pathRows(one) * ROW;
     const uint64_t confidence = resamples ? WORD : 0;
-    const uint64_t shifted = resamples ? uint64_t{settings.spatial} * shared::slotRows(count, one) * ROW : 0;
+    const uint64_t shifted = resamples ? uint64_t{settings.spatial} * shared::slotRows(count, one, densities) * ROW : 0;
     const uint64_t merged = colorReading(settings) != Color::Chosen ? ROW : 0;
     const uint64_t variate = colorReading(settings) == Color::Variate ? ROW : 0;
     return {

@@ -21,8 +21,15 @@ FramePlan framePlan(const SceneOnDevice& scene, const Settings& settings, uint32
     if (settings.method == Method::Pt) {
         plan.push_back({"path_trace", variant, pixels});
     } else {
-        plan.push_back({"canonical", variant, pixels});
         using Frame = const FrameState&;
+        if (settings.mutate == Mutate::Off) {
+            plan.push_back({"canonical", variant, pixels});
+        } else {
+            plan.push_back({"canonical", variant, pixels, [](Frame f) { return !(f.history && f.sameView); }});
+            plan.push_back({"canonical", sameView, pixels, [](Frame f) { return f.history && f.sameView; }});
+            plan.push_back({"mutate", variant, pixels, [](Frame f) { return f.history && !f.sameView && !f.moved; }});
+            plan.push_back({"mutate", moved, pixels, [](Frame f) { return f.history && f.moved; }});
+        }
         plan.push_back({"temporal", variant, pixels, [](Frame f) { return f.history && !f.sameView && !f.moved; }});
         plan.push_back({"temporal", sameView, pixels, [](Frame f) { return f.history && f.sameView; }});
         plan.push_back({"temporal", moved, pixels, [](Frame f) { return f.history && f.moved; }});

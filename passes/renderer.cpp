@@ -311,6 +311,8 @@ RenderStats Renderer::stats()
     for (size_t i = 0; i < std::size(STAGE_NAMES); ++i)
         stats.nonFinite[STAGE_NAMES[i]] = counter(shared::COUNTER_NONFINITE + i);
     const uint64_t held = counter(shared::COUNTER_HELD);
+    stats.mutations = {{"proposed", counter(shared::COUNTER_PROPOSED)},
+                       {"accepted", counter(shared::COUNTER_ACCEPTED)}};
     stats.treesPerPixel = held > 0 ? double(counter(shared::COUNTER_TREES)) / double(held) : 0;
     return stats;
 }

@@ -30,6 +30,7 @@ struct RenderStats {
     std::map<std::string, uint64_t> shifts; // by outcome, since the last reset
     double treesPerPixel =
         0; // path trees among the reservoirs of a pixel that all hold a sample: 1 when all agree; 0: one reservoir
+    std::map<std::string, uint64_t> mutations; // of history's samples: proposed, accepted
     std::map<std::string, uint64_t> nonFinite; // values found not finite (and counted as 0), by stage
     double tablesSeconds = 0;                  // scene -> tables, without the BVH
     double bvhSeconds = 0;

@@ -20,6 +20,7 @@ namespace passes
 enum class Method : uint32_t { Pt, RestirPt, RgbRestir, GroupedRestir };
 enum class Shift : uint32_t { Replay, Reconnection, Hybrid };
 enum class Color : uint32_t { Chosen, Weighted, Variate };
+enum class Mutate : uint32_t { Off, Free };
 enum class PixelFilter : uint32_t { Center, Box };
 
 // Their words, and those of what is on or off, on the command line and in presets: WORDS_OF<Shift>[size_t(shift)].
@@ -33,6 +34,8 @@ template <>
 inline constexpr auto WORDS_OF<Shift> = std::array{"replay", "reconnection", "hybrid"};
 template <>
 inline constexpr auto WORDS_OF<Color> = std::array{"chosen", "weighted", "variate"};
+template <>
+inline constexpr auto WORDS_OF<Mutate> = std::array{"off", "free"};
 template <>
 inline constexpr auto WORDS_OF<PixelFilter> = std::array{"center", "box"};
 
@@ -52,7 +55,8 @@ struct Settings {
     float spatialRadius = 0; // pixels; 0: by the picture's height
     Color color = Color::Weighted;
     uint32_t colorConfidence = 1048576; // the most that history counts in variate's own estimate
-    uint32_t maxBounces = 5;            // scattering events
+    Mutate mutate = Mutate::Off;
+    uint32_t maxBounces = 5; // scattering events
     PixelFilter pixelFilter = PixelFilter::Center;
     uint32_t width = 640;
     uint32_t height = 360;
@@ -130,6 +134,7 @@ void visitSettings(AnySettings& s, Visitor&& visit)
     visit(Knob{"spatial-radius", Role::Estimator, Change::Tune, 0, 1000, "pixels", "How far away ReSTIR's spatial neighbors may be; 0: an 18th of the picture's height, at least 2. Too far, and neighbors see other light: noisier. Unbiased, free."}, s.spatialRadius);
     visit(Knob{"color", Role::Estimator, Change::Compile, 0, 0, "", "How ReSTIR's color is read off the reservoirs. chosen: the color of the samples that were chosen, as in the paper; weighted: that of all samples merged last, by their weights: less color noise in this frame, the same reservoirs; variate: an estimate of each pixel's color is kept beside the reservoirs, reused as they are, and corrected by their samples where pixels see different light: color noise falls with history as rgb-restir's does, at luminance's price; values may fall below 0. For rgb-restir, whose samples have one color, all are one picture. Unbiased; weighted costs 16 bytes a pixel, variate 32."}, s.color);
     visit(Knob{"color-confidence", Role::Estimator, Change::Tune, 1, 1048576, "frames", "Of --color variate: the most that history may count against a new frame in its own estimate, beyond what M_c allows. Smaller: it follows light that changes, and is noisier where it does not. Unbiased, free."}, s.colorConfidence);
+    visit(Knob{"mutate", Role::Estimator, Change::Compile, 0, 0, "", "What is done to the samples that ReSTIR's history holds, which else stay for as long as nothing better comes. off: nothing, as in the paper; free: a Metropolis-Hastings step: a new path of the same length and kind takes a sample's place with the probability that leaves the mean as it is. A frame is as noisy, but successive frames are less alike, and their mean goes on converging. Unbiased; a resting camera pays no ray, a moving one up to a walk per pixel; 32 bytes a pixel and 16 a neighbor."}, s.mutate);
     visit(Knob{"max-bounces", Role::Picture, Change::Compile, 0, 256, "scattering events", "Longest path: 0 shows emitters only, 1 adds direct light, and so on. Leaves out all light that scatters more often (biased by that); cost grows with it."}, s.maxBounces);
     visit(Knob{"pixel-filter", Role::Picture, Change::Compile, 0, 0, "", "center: rays through the pixel's center, as in the paper, edges stay jagged; box: uniform over the pixel. Each is unbiased for its own picture; free."}, s.pixelFilter);
     visit(Knob{"size", Role::View, Change::Compile, 1, MAX_SIZE, "pixels", "Width x height of the picture. Cost grows with their product. Unbiased."}, SizeField{s.width, s.height});

@@ -28,6 +28,8 @@ static_assert(uint32_t(Shift::Replay) == shared::SHIFT_REPLAY &&
 static_assert(uint32_t(Color::Chosen) == shared::COLOR_CHOSEN && uint32_t(Color::Weighted) == shared::COLOR_WEIGHTED &&
               uint32_t(Color::Variate) == shared::COLOR_VARIATE);
 
+static_assert(uint32_t(Mutate::Off) == shared::MUTATION_OFF && uint32_t(Mutate::Free) == shared::MUTATION_FREE);
+
 Variant makeVariant(const scene::SceneFeatures& features, const Settings& settings, bool orthographic,
                     const scene::TraversalStack& stack, bool moves)
 {
@@ -42,6 +44,7 @@ Variant makeVariant(const scene::SceneFeatures& features, const Settings& settin
         v.RESERVOIR_COUNT = uint32_t(estimatorOf(settings.method).target.size());
         v.SHIFT_MAP = uint32_t(settings.shift);
         v.COLOR_READING = uint32_t(colorReading(settings));
+        v.MUTATION = uint32_t(settings.mutate);
         v.ONE_CHANNEL = oneHot(estimatorOf(settings.method));
     }
 #define COPY_FEATURE(ID, TYPE, NAME, DEFAULT, WHAT) v.NAME = features.NAME;

@@ -95,7 +95,9 @@ void main()
 
     PrimaryHit hit = loadPrimaryHit(uvec2(request.pixel % frame.width, request.pixel / frame.width));
     if (!hit.seen) return;
-    path = PathSample(PathSeed(frame.frame, request.pixel), makePathId(MAX_BOUNCES + 1u, BY_LIGHT), 0u, NO_SAMPLE.reconnection);
+    path = NO_SAMPLE;
+    path.seed = PathSeed(frame.frame, request.pixel);
+    path.pathId = makePathId(MAX_BOUNCES + 1u, BY_LIGHT);
     if (request.plain == 0u) {
         Reservoir r = loadHistoryHead(request.pixel, c);
         if (!(r.weightSum > 0.0)) return;

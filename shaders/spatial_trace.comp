@@ -25,11 +25,13 @@ void main()
     Domain here = makeDomain(pixel, false);
     uint neighbor = here.seen ? chooseNeighbor(at, slot, here) : NO_NEIGHBOR;
     vec3 f[MAX_RESERVOIRS];
+    vec4 densities = vec4(1.0);
     if (neighbor != NO_NEIGHBOR) {
         Reservoir own[MAX_RESERVOIRS];
         loadReservoirs(pixel, own);
         shiftInto(makeDomain(neighbor, false), own, f);
+        for (uint c = 0u; c < RESERVOIR_COUNT; ++c) densities[c] = renewed(c).density;
     }
-    storeShifted(pixel, slot, neighbor, f);
+    storeShifted(pixel, slot, neighbor, f, densities);
     countShifts();
 }

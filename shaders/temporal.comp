@@ -74,7 +74,7 @@ void main()
     loadReservoirs(pixel, r);
     loadHistory(previousPixel, old);
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
-        if (BETWEEN_WORLDS) old[c].chosen.reconnection = renewed(c);
+        if (BETWEEN_WORLDS || (KEEPS_DENSITIES && !SAME_VIEW)) old[c].chosen = renewed(c);
     uint confidence = confidences[pixel];
     uvec4 random = decisionRandom(pixel, STREAM_TEMPORAL);
     float u = decisionFloat(random.x); // one for all reservoirs

@@ -8,8 +8,8 @@
 PathSeed candidateSeed;
 
 bool visit(Vertex x) { return true; }
-bool wants(uint pathId) { return true; }
-bool goesOn(uint k) { return k < MAX_BOUNCES || HAS_REACHABLE_LIGHT; }
+bool wants(uint pathId) { return seeks(pathId); }
+bool goesOn(uint k) { return (k < MAX_BOUNCES || HAS_REACHABLE_LIGHT) && seeksBeyond(k); }
 void emit(uint pathId, vec3 f, Ending e)
 {
     float density;
@@ -32,6 +32,14 @@ bool offerCandidates(PathSeed seed, uvec2 at, out vec3 emission, out vec3 albedo
     }
     emission = hit.emission;
     return hit.seen;
+}
+
+// The same from the first vertex of a domain, in the world that has been entered.
+void offerCandidatesOf(Domain d, PathSeed seed)
+{
+    candidateSeed = seed;
+    footprint = d.footprint;
+    walk(loadSurface(d.triangle, d.barycentric, d.wo), d.wo, seed);
 }
 
 void countCandidates()

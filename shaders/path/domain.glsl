@@ -1,6 +1,6 @@
 // Domains: the integral of one pixel in one frame. With shift.glsl and candidates.glsl all that resampling knows of light
 // transport; tests put a closed-form integrand in place of the three. What stages use of them: Domain.seen, makeDomain, alike,
-// carriedOn, reproject; shiftInto, renewed, countShifts; offerCandidates, countCandidates.
+// carriedOn, reproject, enterWorld; shiftInto, renewed, countShifts; offerCandidates, offerCandidatesOf, countCandidates.
 #ifndef SHADERS_PATH_DOMAIN_GLSL
 #define SHADERS_PATH_DOMAIN_GLSL
 

@@ -42,5 +42,7 @@ void emitUnlessBlocked(uint pathId, vec3 f, Ending e, ShadowRay shadow); // now,
 // Of candidates.glsl. A path that carries light: f in primary sample space; f times `density` is f(Y), in the measure that
 // shifts preserve.
 void offer(PathSample y, vec3 f, float density);
+bool seeks(uint pathId);      // is this path, by next-event estimation, wanted?
+bool seeksBeyond(uint k);     // is any that scatters at x_k or beyond?
 
 #endif

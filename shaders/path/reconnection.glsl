@@ -101,17 +101,23 @@ Reconnection suffixOf(Reconnection kept, bool last, vec3 suffix, Ending e)
                 : Reconnection(kept.triangle, kept.barycentric, 0.0, kept.direction, suffix);
 }
 
+// Of f's measure over primary sample space, of a path that reconnects at x_r: p_(r-1) G, and p_r where scattering left x_r.
+float densityOf(uint r, uint pathId, float arrival, float departure)
+{
+    return pathId == makePathId(r, BY_LIGHT) ? arrival : arrival * departure;
+}
+
 // The path just emitted as a sample; `density` turns its contribution in primary sample space into f(Y).
 PathSample sampleOf(PathSeed seed, uint pathId, Ending e, out float density)
 {
     density = 1.0;
-    if (SHIFT_MAP == SHIFT_REPLAY) return PathSample(seed, pathId, 0u, NO_VERTEX.kept);
+    if (SHIFT_MAP == SHIFT_REPLAY) return PathSample(seed, pathId, 0u, NO_VERTEX.kept, 1.0);
     bool byLight = techniqueOf(pathId) == BY_LIGHT;
     ReconnectionVertex x = reconnectionVertex;
     if (x.index == 0u && !byLight) x = lightVertex;
     bool last = x.index == scatteringsOf(pathId); // what follows x_r is light
-    density = last && byLight ? x.arrival : x.arrival * x.departure;
-    return PathSample(seed, pathId, x.index, suffixOf(x.kept, last, x.kept.suffix * e.weighted, e));
+    density = densityOf(x.index, pathId, x.arrival, x.departure);
+    return PathSample(seed, pathId, x.index, suffixOf(x.kept, last, x.kept.suffix * e.weighted, e), density);
 }
 
 #endif

@@ -57,6 +57,7 @@ void tracePending()
 uint joinedSurface = 0u; // bit c: reservoir c waits for it; always 0 but between worlds
 bool resumed = false;    // this is it
 vec3 joinedPrefix;       // what their paths carry to x_r
+float joinedArrival;     // p_(r-1) G
 Reconnection joinedAt;   // x_r
 vec3 joinedFrom;         // direction to x_(r-1)
 Bsdf onward;             // of x_r
@@ -90,11 +91,11 @@ bool goesOn(uint k)
     return more;
 }
 
-// What follows x_r when it scatters on, of path y: the last factors of f(T Y). `at` is the scattering at x_r.
-vec3 afterReconnection(PathSample y, Bsdf at)
+// What follows x_r when it scatters on, of path y: the last factors of f(T Y). `at` is the scattering at x_r, `departure` the
+// density with which it leaves.
+vec3 afterReconnection(PathSample y, Bsdf at, out float departure)
 {
     Reconnection r = y.reconnection;
-    float departure;
     vec3 f = evaluate(at, r.direction * at.frame, r.direction, departure);
     if (f == vec3(0.0)) return vec3(0.0);
     float weight = 1.0; // what is left of the MIS weight and depends on x_(r-1)
@@ -111,7 +112,9 @@ void emitResumed(uint pathId, vec3 suffix, Ending e)
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         if (!isOpen(c) || moving[c].pathId != pathId) continue;
         moving[c].reconnection = suffixOf(moving[c].reconnection, moving[c].reconnectionIndex == scatteringsOf(pathId), suffix, e);
-        vec3 f = joinedPrefix * afterReconnection(moving[c], onward);
+        float departure;
+        vec3 f = joinedPrefix * afterReconnection(moving[c], onward, departure);
+        moving[c].density = densityOf(moving[c].reconnectionIndex, pathId, joinedArrival, departure);
         settle(c, f == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, f);
     }
 }
@@ -171,7 +174,8 @@ void join(Vertex x)
         bool exists = !TWO_WORLDS || infinite || at.area > 0.0; // else it is hidden, or a point, in this world
         bool lightJoins = joinsLight(x.k + 1u, x.s, position, distance, pdf * geometry) && exists;
         bool surfaceJoins = lightJoins && scattersWidely(at);
-        vec3 prefix = x.throughput * f * (infinite ? geometry : geometry * unitOfArea(at));
+        float measure = infinite ? geometry : geometry * unitOfArea(at);
+        vec3 prefix = x.throughput * f * measure;
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
             if ((joining & (1u << c)) == 0u) continue;
             bool toLight = scatteringsOf(moving[c].pathId) == x.k;
@@ -181,8 +185,10 @@ void join(Vertex x)
                 continue;
             }
             vec3 moved = vec3(0.0);
+            float departure = 1.0;
             if (joinable && scatters && (toLight || !endsHere))
-                moved = prefix * (toLight ? asLight : afterReconnection(moving[c], bsdf));
+                moved = prefix * (toLight ? asLight : afterReconnection(moving[c], bsdf, departure));
+            moving[c].density = densityOf(x.k + 1u, moving[c].pathId, pdf * measure, departure);
             settle(c, !joinable ? SHIFT_NOT_JOINABLE : moved == vec3(0.0) ? SHIFT_DARK : SHIFT_DONE, moved);
             joined |= moved != vec3(0.0) ? 1u << c : 0u;
         }
@@ -190,6 +196,7 @@ void join(Vertex x)
             open &= ~joinedSurface;
             joined |= joinedSurface;
             joinedPrefix = prefix;
+            joinedArrival = pdf * measure;
             joinedAt = r;
             joinedFrom = -direction;
             firstVertex = x.k + 1u;
@@ -276,8 +283,8 @@ void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS
     }
 }
 
-// Of the sample that was shifted last from reservoir c: what holds of its path in the domain where it is now.
-Reconnection renewed(uint c) { return moving[c].reconnection; }
+// The sample that was shifted last from reservoir c: what holds of it in the domain where it is now.
+PathSample renewed(uint c) { return moving[c]; }
 
 void countShifts()
 {

@@ -27,6 +27,7 @@ struct PathSample {
     uint pathId;            // which path of the tree: path/path_id.glsl
     uint reconnectionIndex; // r of the reconnection vertex x_r; 0: the whole path is replayed
     Reconnection reconnection; // when reconnectionIndex > 0
+    float density;             // f(Y) over this is its contribution in primary sample space; kept for mutations alone
 };
 
 struct Reservoir {
@@ -37,7 +38,7 @@ struct Reservoir {
 };
 
 const PathSample NO_SAMPLE =
-    PathSample(PathSeed(0u, 0u), 0u, 0u, Reconnection(0u, vec2(0.0), 0.0, vec3(0.0), vec3(0.0)));
+    PathSample(PathSeed(0u, 0u), 0u, 0u, Reconnection(0u, vec2(0.0), 0.0, vec3(0.0), vec3(0.0)), 1.0);
 const Reservoir EMPTY = Reservoir(NO_SAMPLE, vec3(0.0), 0.0, 0.0);
 
 // Algorithm 1, update: true when the new sample of weight w is the one to keep.

@@ -9,13 +9,18 @@
 #include "restir/reservoir.glsl"
 #include "shared/rows.h"
 
+// Densities are all 1 where paths are replayed whole.
+const bool KEEPS_DENSITIES = MUTATION != MUTATION_OFF && SHIFT_MAP != SHIFT_REPLAY;
+
 uint pixelCount() { return frame.width * frame.height; }
-uint headRow(uint pixel, uint row) { return pixel * headRows(RESERVOIR_COUNT, ONE_CHANNEL) + row; }
+uint headRow(uint pixel, uint row) { return pixel * headRows(RESERVOIR_COUNT, ONE_CHANNEL, KEEPS_DENSITIES) + row; }
+uint densityRow(uint pixel) { return headRow(pixel + 1u, 0u) - 1u; }
 uint pathRow(uint pixel, uint c, uint row) { return (pixel * RESERVOIR_COUNT + c) * pathRows(ONE_CHANNEL) + row; }
 uint slotRow(uint pixel, uint slot, uint row)
 {
-    return (pixel * frame.neighborCount + slot) * slotRows(RESERVOIR_COUNT, ONE_CHANNEL) + row;
+    return (pixel * frame.neighborCount + slot) * slotRows(RESERVOIR_COUNT, ONE_CHANNEL, KEEPS_DENSITIES) + row;
 }
+uint slotDensityRow(uint pixel, uint slot) { return slotRow(pixel, slot + 1u, 0u) - 1u; }
 
 // ONE_CHANNEL: each target is one channel alone. Nobody asks for the others of what a reservoir holds, and they are not kept.
 float onlyChannel(uint c, vec3 v)
@@ -29,9 +34,9 @@ vec3 inChannel(uint c, float x)
     return vec3(own.x ? x : 0.0, own.y ? x : 0.0, own.z ? x : 0.0);
 }
 
-// LOAD_RESERVOIRS defines, over a set's two tables: load<SET>Head and load<SET>Path, one reservoir without and its path;
-// load<SET>, all of a pixel's. STORE_RESERVOIRS: store<SET>. Arrays have MAX_RESERVOIRS elements, of which RESERVOIR_COUNT are
-// used (lib/lanes.glsl).
+// LOAD_RESERVOIRS defines, over a set's two tables: load<SET>Head, one reservoir without path and density; load<SET>Path and
+// load<SET>Density; load<SET>, all of a pixel's. STORE_RESERVOIRS: store<SET>. Arrays have MAX_RESERVOIRS elements, of which
+// RESERVOIR_COUNT are used (lib/lanes.glsl).
 #define LOAD_RESERVOIRS(SET, HEADS, PATHS)                                                                             \
     Reservoir load##SET##Head(uint pixel, uint c)                                                                      \
     {                                                                                                                  \
@@ -61,11 +66,17 @@ vec3 inChannel(uint c, float x)
         else suffix = uintBitsToFloat(FETCH(PATHS, pathRow(pixel, c, 2u)).xyz);                                        \
         return Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w), onward.xyz, suffix);      \
     }                                                                                                                  \
+    float load##SET##Density(uint pixel, uint c)                                                                       \
+    {                                                                                                                  \
+        if (!KEEPS_DENSITIES) return 1.0;                                                                              \
+        return uintBitsToFloat(FETCH(HEADS, densityRow(pixel))[c]);                                                    \
+    }                                                                                                                  \
     void load##SET(uint pixel, out Reservoir r[MAX_RESERVOIRS])                                                        \
     {                                                                                                                  \
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
             r[c] = load##SET##Head(pixel, c);                                                                          \
             r[c].chosen.reconnection = load##SET##Path(pixel, c);                                                      \
+            r[c].chosen.density = load##SET##Density(pixel, c);                                                        \
         }                                                                                                              \
     }
 
@@ -74,6 +85,7 @@ vec3 inChannel(uint c, float x)
     {                                                                                                                  \
         vec4 f = vec4(0.0);                                                                                            \
         vec4 carry = vec4(0.0);                                                                                        \
+        vec4 densities = vec4(0.0);                                                                                    \
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
             PathSample y = r[c].chosen;                                                                                \
             STORE(HEADS, headRow(pixel, c),                                                                            \
@@ -81,6 +93,7 @@ vec3 inChannel(uint c, float x)
                         floatBitsToUint(r[c].weightSum)));                                                             \
             f[c] = onlyChannel(c, r[c].f);                                                                             \
             carry[c] = r[c].carry;                                                                                     \
+            densities[c] = y.density;                                                                                  \
             if (!ONE_CHANNEL)                                                                                          \
                 STORE(HEADS, headRow(pixel, RESERVOIR_COUNT + c), floatBitsToUint(vec4(r[c].f, r[c].carry)));          \
             if (SHIFT_MAP == SHIFT_REPLAY) continue;                                                                   \
@@ -94,10 +107,13 @@ vec3 inChannel(uint c, float x)
             STORE(HEADS, headRow(pixel, RESERVOIR_COUNT), floatBitsToUint(f));                                         \
             STORE(HEADS, headRow(pixel, RESERVOIR_COUNT + 1u), floatBitsToUint(carry));                                \
         }                                                                                                              \
+        if (KEEPS_DENSITIES) {                                                                                         \
+            STORE(HEADS, densityRow(pixel), floatBitsToUint(densities));                                               \
+        }                                                                                                              \
     }
 
-// Of a slot: which neighbor the pixel picked, and f of the pixel's samples in the neighbor's domain. Without a neighbor only
-// that is stored.
+// Of a slot: which neighbor the pixel picked, and f and densities of the pixel's samples in the neighbor's domain. Without a
+// neighbor only that is stored.
 #define LOAD_SHIFTED(TABLE_NAME)                                                                                       \
     uint neighborIn(uint pixel, uint slot)                                                                             \
     {                                                                                                                  \
@@ -108,11 +124,19 @@ vec3 inChannel(uint c, float x)
     {                                                                                                                  \
         if (ONE_CHANNEL) return inChannel(c, uintBitsToFloat(FETCH(TABLE_NAME, slotRow(pixel, slot, 0u))[c]));         \
         return uintBitsToFloat(FETCH(TABLE_NAME, slotRow(pixel, slot, c)).xyz);                                        \
+    }                                                                                                                  \
+    float densityFrom(uint pixel, uint slot, uint c)                                                                   \
+    {                                                                                                                  \
+        if (!KEEPS_DENSITIES) return 1.0;                                                                              \
+        return uintBitsToFloat(FETCH(TABLE_NAME, slotDensityRow(pixel, slot))[c]);                                     \
     }
 
 #define STORE_SHIFTED(TABLE_NAME)                                                                                      \
-    void storeShifted(uint pixel, uint slot, uint neighbor, vec3 f[MAX_RESERVOIRS])                                    \
+    void storeShifted(uint pixel, uint slot, uint neighbor, vec3 f[MAX_RESERVOIRS], vec4 densities)                    \
     {                                                                                                                  \
+        if (KEEPS_DENSITIES) {                                                                                         \
+            STORE(TABLE_NAME, slotDensityRow(pixel, slot), floatBitsToUint(densities));                                \
+        }                                                                                                              \
         if (ONE_CHANNEL) {                                                                                             \
             uvec4 row = uvec4(neighbor);                                                                               \
             for (uint c = 0u; c < RESERVOIR_COUNT; ++c) row[c] = floatBitsToUint(onlyChannel(c, f[c]));                \

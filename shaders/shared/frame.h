@@ -46,10 +46,11 @@ struct FrameUniform {
     X(0u, PRIMARY, "primary")                                                                                          \
     X(1u, PATH_TRACE, "path_trace")                                                                                    \
     X(2u, CANONICAL, "canonical")                                                                                      \
-    X(3u, TEMPORAL, "temporal")                                                                                        \
-    X(4u, SPATIAL_TRACE, "spatial_trace")                                                                              \
-    X(5u, SPATIAL_GATHER, "spatial_gather")                                                                            \
-    X(6u, ACCUMULATE, "accumulate")
+    X(3u, MUTATE, "mutate")                                                                                            \
+    X(4u, TEMPORAL, "temporal")                                                                                        \
+    X(5u, SPATIAL_TRACE, "spatial_trace")                                                                              \
+    X(6u, SPATIAL_GATHER, "spatial_gather")                                                                            \
+    X(7u, ACCUMULATE, "accumulate")
 
 // Device counters, 64 bits as (low, high) pairs: rays by kind, shifts by outcome, non-finite values by stage.
 SHARED_CONST uint COUNTER_PRIMARY = 0u;
@@ -68,7 +69,9 @@ SHARED_CONST uint SHIFT_DARK = 5u;           // joined, but nothing is scattered
 SHARED_CONST uint SHIFT_OUTCOMES = 6u;
 SHARED_CONST uint COUNTER_HELD = 11u;      // pixels of which every reservoir holds a sample, when there are several
 SHARED_CONST uint COUNTER_TREES = 12u;     // different path trees among those reservoirs
-SHARED_CONST uint COUNTER_NONFINITE = 13u; // + stage
+SHARED_CONST uint COUNTER_PROPOSED = 13u;  // mutations of samples that history holds
+SHARED_CONST uint COUNTER_ACCEPTED = 14u;  // and how many of them replaced theirs
+SHARED_CONST uint COUNTER_NONFINITE = 15u; // + stage
 #define DECLARE_STAGE(INDEX, NAME, SHADER) SHARED_CONST uint STAGE_##NAME = INDEX;
 FRAME_STAGES(DECLARE_STAGE)
 #undef DECLARE_STAGE

@@ -17,6 +17,10 @@ SHARED_CONST uint STREAM_CANONICAL = 0x10000u; // + path id
 SHARED_CONST uint STREAM_TEMPORAL = 0x20000u;
 SHARED_CONST uint STREAM_SPATIAL = 0x30000u;   // + slot
 SHARED_CONST uint STREAM_NEIGHBORS = 0x40000u; // + slot
+SHARED_CONST uint STREAM_MUTATION = 0x50000u;
+
+// Bit of a seed's frame: of paths that were walked in the domain of the frame before. Frames do not reach it.
+SHARED_CONST uint SEED_OF_PROPOSAL = 0x80000000u;
 
 SHARED_END
 #endif

@@ -47,7 +47,8 @@
     X(31, bool, ONE_CHANNEL, false, "contributions kept as one number, for targets of one channel alone")              \
     X(32, bool, TWO_WORLDS, false, "a scene that moves: as it is in this frame, and as it was in the one before")      \
     X(33, bool, BETWEEN_WORLDS, false, "temporal reuse from a frame in which the scene was another")                   \
-    X(35, bool, STORES_IN_STORAGE, false, "tables written as storage buffers, which must hold them")
+    X(35, bool, STORES_IN_STORAGE, false, "tables written as storage buffers, which must hold them")                   \
+    X(36, uint, MUTATION, 0u, "what history's samples are mutated by before they are merged: 0 nothing, 1 new paths")
 
 SHARED_BEGIN
 
@@ -60,6 +61,10 @@ SHARED_CONST uint SHIFT_HYBRID = 2u;
 SHARED_CONST uint COLOR_CHOSEN = 0u;
 SHARED_CONST uint COLOR_WEIGHTED = 1u;
 SHARED_CONST uint COLOR_VARIATE = 2u;
+
+// Values of MUTATION.
+SHARED_CONST uint MUTATION_OFF = 0u;
+SHARED_CONST uint MUTATION_FREE = 1u;
 
 SHARED_END
 

@@ -252,6 +252,7 @@ TEST_F(RendererTest, DoesWhatTheChangeOfEachKnobSays)
         {"spatial-radius", "4"},
         {"color", "chosen"},
         {"color-confidence", "3"},
+        {"mutate", "free"},
         {"max-bounces", "1"},
         {"pixel-filter", "box"},
         {"size", fmt::format("{}x{}", 2 * base.width, 2 * base.height)}, // the camera stays, and with it the aspect

@@ -28,6 +28,7 @@ Settings unusual()
     s.spatialRadius = 0.1f + 31;
     s.color = passes::Color::Chosen;
     s.colorConfidence = 1048575;
+    s.mutate = passes::Mutate::Free;
     s.maxBounces = 0;
     s.pixelFilter = passes::PixelFilter::Box;
     s.width = 17;

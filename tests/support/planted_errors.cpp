@@ -32,7 +32,7 @@ const std::vector<PlantedError>& plantedErrors()
         // What shows only where the scene moves.
         {"PreviousWorldForgotten", "scene/bindings.glsl", "previous && BETWEEN_WORLDS ? 1u - frame.world : frame.world",
          "frame.world"},
-        {"StaleSuffix", "temporal.comp", "if (BETWEEN_WORLDS) old[c]", "if (false) old[c]"},
+        {"StaleSuffix", "temporal.comp", "if (BETWEEN_WORLDS ||", "if (false &&"},
         {"StretchingForgotten", "path/reconnection.glsl", "TWO_WORLDS ? s.area : 1.0", "1.0"},
         // What weighted color alone shows: reservoirs stay right.
         {"ColorOfOwnWeightTimes1_02", "temporal.comp", "color += weight * colorOf", "color += 1.02 * weight * colorOf"},
@@ -53,6 +53,20 @@ const std::vector<PlantedError>& plantedErrors()
          "(r[c].weightSum * (merge[c].kept + 0.04 * (1.0 - merge[c].kept)) + r[c].carry)"},
         {"ColorOfTheFirstPathTwice", "canonical.comp", "allPaths += f;",
          "allPaths += canonical[0].weightSum > 0.0 ? f : 2.0 * f;"},
+        // What mutations of history's samples alone show.
+        {"MutationWithoutDensities", "restir/mutation.glsl", " / mutated[c].chosen.density);", ");"},
+        {"MutationTooOften", "restir/mutation.glsl", "threshold[c] = u * (", "threshold[c] = 0.9 * u * ("},
+        {"MutationKeepsAnotherMeasure", "restir/mutation.glsl", "mutated[c].f = stored;", "mutated[c].f = f;"},
+        {"MutationToAnotherKind", "restir/mutation.glsl", "mutated[c].chosen.pathId == pathId", "true"},
+        {"MutationByChosenPathsAlone", "canonical.comp", "    if (MUTATES) endMutation(pixel);",
+         "    if (MUTATES && canonical[0].chosen.pathId == mutated[0].chosen.pathId) endMutation(pixel);"},
+        {"MutationByPathsItKnows", "mutate.comp", "frame.frame | SEED_OF_PROPOSAL", "frame.frame - 1u"},
+        {"MutationInAnotherDomain", "mutate.comp", "makeDomain(pixel, true)", "makeDomain(pixel, false)"},
+        {"MutationForgetsTheDensityInTime", "temporal.comp", "old[c].chosen = renewed(c);",
+         "{ old[c].chosen = renewed(c); old[c].chosen.density = 1.0; }"},
+        {"MutationForgetsTheDensityInSpace", "spatial_gather.comp", "density[c] = densityFrom(neighbor, slot, c);", ""},
+        {"MutationByTheDensityElsewhere", "path/shift.glsl",
+         "moving[c].density = densityOf(x.k + 1u, moving[c].pathId, pdf * measure, departure);", ""},
         // What the color estimate beside reservoirs alone shows.
         {"EstimateClamped", "temporal.comp",
          "roundedAtRandom(history, newShare * (news - history) + (1.0 - newShare) * difference, random)",

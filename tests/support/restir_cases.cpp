@@ -35,10 +35,13 @@ std::vector<RestirCase> restirMatrix()
             for (const Reuse reuse : {Temporal, Spatial, Both})
                 for (const bool moves : {false, true})
                     for (const auto& [maxConfidence, frames] : {std::pair(1u, 4u), {8u, 10u}, {64u, 6u}, {4096u, 9u}})
-                        for (const passes::Color color : {Chosen, Weighted, Variate}) {
-                            if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
-                            cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color});
-                        }
+                        for (const passes::Color color : {Chosen, Weighted, Variate})
+                            for (const passes::Mutate mutate : {passes::Mutate::Off, passes::Mutate::Free}) {
+                                if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
+                                if (mutate != passes::Mutate::Off && reuse == Spatial) continue; // no history
+                                cases.push_back(
+                                    {"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color, mutate});
+                            }
     return asFamily(std::move(cases));
 }
 
@@ -51,7 +54,7 @@ std::string RestirCase::name() const
     constexpr const char* REUSES[] = {"Temporal", "Spatial", "Both"};
     return std::string(scene) + METHODS[size_t(method)] + SHIFTS[size_t(shift)] + REUSES[size_t(reuse)] +
            (moves ? "Moving" : "Resting") + std::to_string(maxConfidence) +
-           std::array{"Chosen", "", "Variate"}[size_t(color)];
+           std::array{"Chosen", "", "Variate"}[size_t(color)] + std::array{"", "Mutated"}[size_t(mutate)];
 }
 
 void PrintTo(const RestirCase& c, std::ostream* os)
@@ -98,6 +101,7 @@ TileVerdict RestirCase::verdict(gpu::Device& device) const
     settings.spatialRadius = 5;
     settings.maxConfidence = maxConfidence;
     settings.color = color;
+    settings.mutate = mutate;
     settings.frames = frames;
     settings.average = false;
 
@@ -135,6 +139,7 @@ std::vector<RestirCase> restirCases()
     using enum passes::Shift;
     using enum passes::Color;
     using enum Reuse;
+    constexpr passes::Mutate FREE = passes::Mutate::Free;
     return {
         {"Lambert", RgbRestir, Replay, Temporal, true, 8},
         {"Lambert", RgbRestir, Hybrid, Both, true, 64},
@@ -158,6 +163,13 @@ std::vector<RestirCase> restirCases()
         {"FrostedGlass", RestirPt, Hybrid, Both, true, 8, 800, 5, Variate},
         {"Room", RestirPt, Reconnection, Both, true, 64, 450, 5, Variate},
         {"ManyLamps", GroupedRestir, Hybrid, Temporal, true, 4096, 200, 5, Variate},
+        {"Glossy", RestirPt, Hybrid, Both, false, 64, 400, 12, Weighted, FREE},
+        {"Glossy", RgbRestir, Hybrid, Both, true, 8, 400, 8, Weighted, FREE},
+        {"AlphaBlend", RgbRestir, Hybrid, Both, true, 8, 400, 5, Weighted, FREE},
+        {"FrostedGlass", RestirPt, Replay, Both, true, 8, 800, 5, Chosen, FREE},
+        {"Panes", RestirPt, Hybrid, Temporal, false, 8, 400, 5, Weighted, FREE},
+        {"Room", RestirPt, Reconnection, Both, true, 64, 450, 5, Variate, FREE},
+        {"ManyLamps", GroupedRestir, Hybrid, Temporal, false, 4096, 200, 12, Chosen, FREE},
         {"Copies", RgbRestir, Hybrid, Both, true, 8},
         {"MaskedCopies", RestirPt, Reconnection, Both, true, 8},
         {"GlassCopies", RgbRestir, Hybrid, Both, false, 8},

@@ -24,6 +24,7 @@ struct RestirCase {
     uint32_t runs = 200; // at most: fewer where fewer tell
     uint32_t frames = 5;
     passes::Color color = passes::Color::Weighted;
+    passes::Mutate mutate = passes::Mutate::Off;
     double level = 1e-3; // how often what is unbiased may seem biased
     uint64_t seed = 1000;
 

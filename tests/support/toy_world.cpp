@@ -119,8 +119,8 @@ std::string ToyCase::name() const
 }
 
 ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const passes::Estimator& estimator,
-                         passes::Shift shift, uint32_t runs, passes::Color color)
-    : device_(device), shaders_(shaders), estimator_(estimator), runs_(runs)
+                         passes::Shift shift, uint32_t runs, passes::Color color, passes::Mutate mutate)
+    : device_(device), shaders_(shaders), estimator_(estimator), runs_(runs), mutates_(mutate != passes::Mutate::Off)
 {
     passes::checkUnbiased(estimator);
     CHECK_EQ(runs % shared::TOY_GROUP, 0u);
@@ -129,6 +129,7 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     variant.SHIFT_MAP = uint32_t(shift);
     variant.COLOR_READING = uint32_t(color);
     variant.ONE_CHANNEL = passes::oneHot(estimator);
+    variant.MUTATION = uint32_t(mutate);
     constants_ = passes::constants(variant);
 
     const uint64_t pixels = uint64_t{runs} * SIZE * SIZE;
@@ -139,11 +140,11 @@ ToyRenderer::ToyRenderer(gpu::Device& device, const std::string& shaders, const 
     add("Frame", sizeof(shared::FrameUniform), gpu::Usage::Uniform);
     add("Counters", 2 * sizeof(uint32_t) * shared::COUNTER_COUNT);
     add("Domains", domainBytes(false).size());
-    const bool one = variant.ONE_CHANNEL;
-    for (const char* set : {"Reservoirs", "History"}) add(set, pixels * shared::headRows(count, one) * 16);
+    const bool one = variant.ONE_CHANNEL, densities = mutates_ && shift != passes::Shift::Replay;
+    for (const char* set : {"Reservoirs", "History"}) add(set, pixels * shared::headRows(count, one, densities) * 16);
     for (const char* set : {"ReservoirPaths", "HistoryPaths"}) add(set, pixels * count * shared::pathRows(one) * 16);
     for (const char* words : {"Confidences", "HistoryConfidences"}) add(words, pixels * sizeof(uint32_t));
-    add("Shifted", pixels * NEIGHBORS * shared::slotRows(count, one) * 16);
+    add("Shifted", pixels * NEIGHBORS * shared::slotRows(count, one, densities) * 16);
     add("Color", pixels * 16);
     add("MergedColor", pixels * 16);
     add("HistoryColor", pixels * 16);
@@ -197,8 +198,10 @@ std::vector<image::Image> ToyRenderer::render(const ToyCase& c, bool elides)
                               .groups = {&s.frame, nullptr, &s.own},
                               .threads = {SIZE * perPixel, SIZE * runs}});
         };
-        encode("canonical");
-        if (c.reuse != Reuse::Spatial && frame.frame > 0) encode("temporal", 1, !c.moves && elides);
+        const bool merges = c.reuse != Reuse::Spatial && frame.frame > 0, sameView = !c.moves && elides;
+        encode("canonical", 1, mutates_ && merges && sameView);
+        if (mutates_ && merges && !sameView) encode("mutate");
+        if (merges) encode("temporal", 1, sameView);
         if (c.reuse != Reuse::Temporal) encode("spatial_trace", NEIGHBORS);
         encode("spatial_gather");
         device_.queue().submit(std::move(encoder));

@@ -33,7 +33,8 @@ class ToyRenderer
   public:
     // `shaders` is put before the stages' names. All `runs` share a dispatch; a multiple of shared::TOY_GROUP.
     ToyRenderer(gpu::Device& device, const std::string& shaders, const passes::Estimator& estimator,
-                passes::Shift shift, uint32_t runs, passes::Color color = passes::Color::Chosen);
+                passes::Shift shift, uint32_t runs, passes::Color color = passes::Color::Chosen,
+                passes::Mutate mutate = passes::Mutate::Off);
 
     // The mean over each group of runs of the last frame, without what is seen directly. With `elides`, the stage for
     // resting cameras is used where nothing moves. A value that is not finite fails the test.
@@ -54,6 +55,7 @@ class ToyRenderer
     std::vector<gpu::Constant> constants_;
     passes::Estimator estimator_;
     uint32_t runs_;
+    bool mutates_;
     std::map<std::string, gpu::Buffer> buffers_;
     std::map<std::pair<std::string, bool>, Stage> stages_;
 };

@@ -65,6 +65,7 @@ nlohmann::ordered_json toJson(const RunReport& report)
             {"rays_per_second", report.wallSeconds > 0 ? double(passes::sumOf(stats.rays)) / report.wallSeconds : 0},
             {"shifts", stats.shifts},
             {"trees_per_pixel", stats.treesPerPixel},
+            {"mutations", stats.mutations},
             {"nonfinite", stats.nonFinite},
             {"mean_rgb", {report.meanRgb.r, report.meanRgb.g, report.meanRgb.b}},
             {"variant", stats.variant},

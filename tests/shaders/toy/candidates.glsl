@@ -1,16 +1,13 @@
 // In place of path/candidates.glsl: each path of the toy.
-#include "toy.glsl"
+#include "domain.glsl"
 
 const vec3 TOY_EMISSION = vec3(0.5, 0.25, 0.125);
 
 void offer(PathSample y, vec3 f, float density);
 
-bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission, out vec3 albedo)
+void offerCandidatesOf(Domain domain, PathSeed seed)
 {
-    emission = TOY_EMISSION;
-    ToyDomain d = toyDomain(pixel.y * frame.width + pixel.x, false);
-    albedo = d.albedo.rgb;
-    if (d.seen == 0u) return false;
+    ToyDomain d = domain.toy;
     for (uint pathId = 0u; pathId < TOY_PATHS; ++pathId) {
         float x = drawn(d, seed, pathId);
         vec3 h = value(d, x, suffixOf(pathId, x), ending(x));
@@ -18,10 +15,18 @@ bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission, out vec3 alb
         float p = density(d, x);
         bool kept = canBeKept(d, x);
         offer(PathSample(seed, pathId, kept ? 2u : 0u,
-                         Reconnection(pathId, vec2(x, 0.0), ending(x), vec3(0.0, x, 0.0), suffixOf(pathId, x))),
+                         Reconnection(pathId, vec2(x, 0.0), ending(x), vec3(0.0, x, 0.0), suffixOf(pathId, x)), kept ? p : 1.0),
               h / p, kept ? p : 1.0);
     }
-    return true;
+}
+
+bool offerCandidates(PathSeed seed, uvec2 pixel, out vec3 emission, out vec3 albedo)
+{
+    Domain d = makeDomain(pixel.y * frame.width + pixel.x, false);
+    emission = TOY_EMISSION;
+    albedo = d.toy.albedo.rgb;
+    if (d.seen) offerCandidatesOf(d, seed);
+    return d.seen;
 }
 
 void countCandidates() {}

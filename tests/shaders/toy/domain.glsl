@@ -1,4 +1,7 @@
 // In place of path/domain.glsl: the toy's domains.
+#ifndef TESTS_SHADERS_TOY_DOMAIN_GLSL
+#define TESTS_SHADERS_TOY_DOMAIN_GLSL
+
 #include "toy.glsl"
 
 struct Domain {
@@ -24,3 +27,5 @@ bool reproject(Domain here, uint pixel, out uint previousPixel)
     previousPixel = pixel / runPixels() * runPixels() + here.toy.previousPixel;
     return here.toy.previousPixel != NO_NEIGHBOR;
 }
+
+#endif

@@ -22,11 +22,16 @@ struct ToyError {
     uint32_t runs = 256;
     passes::Method method = passes::Method::RgbRestir;
     passes::Color color = passes::Color::Chosen;
+    passes::Mutate mutate = passes::Mutate::Off;
 };
 void PrintTo(const ToyError& error, std::ostream* os)
 {
     *os << error.name;
 }
+
+constexpr passes::Method RGB = passes::Method::RgbRestir, LUMINANCE = passes::Method::RestirPt;
+constexpr passes::Color CHOSEN = passes::Color::Chosen;
+constexpr passes::Mutate FREE = passes::Mutate::Free;
 
 const ToyError ERRORS[] = {
     {"WeightTimes1_02", Shift::Replay, {Temporal, true, 8}},
@@ -90,6 +95,13 @@ const ToyError ERRORS[] = {
      1024,
      passes::Method::RestirPt,
      passes::Color::Weighted},
+    // What mutations of history's samples alone show.
+    {"MutationWithoutDensities", Shift::Hybrid, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
+    {"MutationTooOften", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
+    {"MutationKeepsAnotherMeasure", Shift::Hybrid, {Temporal, true, 64, 12}, 1024, RGB, CHOSEN, FREE},
+    {"MutationToAnotherKind", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
+    {"MutationByChosenPathsAlone", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
+    {"MutationInAnotherDomain", Shift::Replay, {Temporal, true, 64, 12}, 1024, RGB, CHOSEN, FREE},
     // What the color estimate beside reservoirs alone shows.
     {"EstimateClamped", Shift::Hybrid, {Temporal, true, 8}, 1024, passes::Method::RestirPt, passes::Color::Variate},
     {"EstimateRatioFromTheSample",
@@ -154,8 +166,8 @@ TEST_P(ToyPlantedErrors, AreFound)
     gpu::Device planted = openDevice({.shaderDirectory = shaders.folder().string()});
     const passes::Estimator& estimator = passes::estimatorOf(error.method);
     // No margin: what is not known well must not count as found.
-    const TileVerdict verdict =
-        ToyRenderer(planted, "", estimator, error.shift, error.runs, error.color).verdict(error.test, 1e-5, 1.0);
+    const TileVerdict verdict = ToyRenderer(planted, "", estimator, error.shift, error.runs, error.color, error.mutate)
+                                    .verdict(error.test, 1e-5, 1.0);
     EXPECT_FALSE(verdict.passes) << verdict.summary;
     std::printf("%s: %s\n", error.name, verdict.summary.c_str());
 }

@@ -1,6 +1,8 @@
 // In place of path/shift.glsl: the toy's shifts.
 #include "domain.glsl"
 
+PathSample moving[MAX_RESERVOIRS];
+
 vec3 moved(ToyDomain d, PathSample y)
 {
     Reconnection kept = y.reconnection;
@@ -15,9 +17,12 @@ vec3 moved(ToyDomain d, PathSample y)
 void shiftInto(Domain to, Reservoir r[MAX_RESERVOIRS], out vec3 f[MAX_RESERVOIRS])
 {
     for (uint c = 0u; c < MAX_RESERVOIRS; ++c) f[c] = vec3(0.0);
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
+        moving[c] = r[c].chosen;
+        if (moving[c].reconnectionIndex != 0u) moving[c].density = density(to.toy, moving[c].reconnection.direction.y);
         if (r[c].weightSum > 0.0) f[c] = finiteOrCounted(moved(to.toy, r[c].chosen), STAGE);
+    }
 }
 
-Reconnection renewed(uint c) { return NO_SAMPLE.reconnection; }
+PathSample renewed(uint c) { return moving[c]; }
 void countShifts() {}

@@ -15,6 +15,7 @@ namespace
 {
 
 using passes::Color;
+using passes::Mutate;
 using passes::Shift;
 
 constexpr Shift SHIFTS[] = {Shift::Replay, Shift::Reconnection, Shift::Hybrid};
@@ -34,11 +35,13 @@ struct Row {
     passes::Estimator estimator;
     Shift shift;
     Color color;
+    Mutate mutate;
 
     std::string name() const
     {
         constexpr const char *NAMES[] = {"Replay", "Reconnection", "Hybrid"}, *COLORS[] = {"", "Weighted", "Variate"};
-        std::string name = estimator.name + NAMES[size_t(shift)] + COLORS[size_t(color)];
+        std::string name =
+            estimator.name + NAMES[size_t(shift)] + COLORS[size_t(color)] + (mutate == Mutate::Off ? "" : "Mutated");
         std::erase(name, '-');
         return name;
     }
@@ -60,11 +63,12 @@ std::vector<Row> rows()
     std::vector<Row> list;
     for (const passes::Estimator& estimator : allEstimators())
         for (const Shift shift : SHIFTS)
-            for (const Color color : {Color::Chosen, Color::Weighted, Color::Variate}) {
-                if (color != Color::Chosen && oneHot(estimator)) continue;
-                if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
-                    list.push_back({estimator, shift, color});
-            }
+            for (const Color color : {Color::Chosen, Color::Weighted, Color::Variate})
+                for (const Mutate mutate : {Mutate::Off, Mutate::Free}) {
+                    if (color != Color::Chosen && oneHot(estimator)) continue;
+                    if (asksAll() || shift == Shift::Hybrid || estimator.name == "rgb-restir")
+                        list.push_back({estimator, shift, color, mutate});
+                }
     return list;
 }
 
@@ -79,7 +83,7 @@ struct Plan {
     double margin = 0.1;
 };
 
-Plan plan(const passes::Estimator& estimator)
+Plan plan(const passes::Estimator& estimator, Mutate mutate)
 {
     using enum Reuse;
     if (!asksAll())
@@ -94,7 +98,7 @@ Plan plan(const passes::Estimator& estimator)
     const uint32_t runs = multiple(8192 / estimator.target.size()), few = multiple(runs / 4);
     Plan all{.cases = {}, .runs = runs, .margin = 0.01};
     for (const bool moves : {false, true}) {
-        all.cases.push_back({Spatial, moves, 1, 2, few}); // M_c limits history alone
+        if (mutate == Mutate::Off) all.cases.push_back({Spatial, moves, 1, 2, few}); // M_c limits history alone
         // So many frames that M_c limits the last ones' history. (4096 frames in time alone are not reached: no limit.)
         for (const auto& [limit, frames] : {std::pair(1u, 6u), {8u, 12u}, {64u, 72u}, {4096u, 12u}})
             all.cases.push_back({Temporal, moves, limit, frames, few});
@@ -106,10 +110,10 @@ Plan plan(const passes::Estimator& estimator)
 
 TEST_P(ToyIntegrals, AreTheMeans)
 {
-    const Plan asked = plan(GetParam().estimator);
+    const Plan asked = plan(GetParam().estimator, GetParam().mutate);
     const double level = 1e-3 / double(2 * rows().size() * asked.cases.size()); // two tests each, 1e-3 for all of them
     ToyRenderer renderer(device(), TEST_SPIRV_DIR "/", GetParam().estimator, GetParam().shift, asked.runs,
-                         GetParam().color);
+                         GetParam().color, GetParam().mutate);
     for (const ToyCase& c : asked.cases) {
         const TileVerdict verdict = renderer.verdict(c, level, asked.margin);
         EXPECT_TRUE(verdict.passes) << c.name();
