@@ -34,9 +34,7 @@ const RestirError ERRORS[] = {
     {"MutationForgetsTheDensityInSpace",
      {"Room", RestirPt, Reconnection, Both, false, 64, 400, 12, passes::Color::Chosen, passes::Mutate::Free}},
     {"MutationForgetsTheDensityInTime",
-     {"Room", RestirPt, Reconnection, Temporal, true, 64, 400, 12, passes::Color::Chosen, passes::Mutate::Free}},
-    {"MutationByPathsItKnows",
-     {"Room", RestirPt, Replay, Temporal, true, 4, 400, 12, passes::Color::Chosen, passes::Mutate::Free}},
+     {"Room", RestirPt, Reconnection, Temporal, true, 64, 1000, 6, passes::Color::Chosen, passes::Mutate::Free}},
     // Where the scene moves.
     {"PreviousWorldForgotten", {"LampChanges", RgbRestir, Hybrid, Temporal, false, 64, 200, 5}},
     {"StaleSuffix", {"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 500, 5}},
