@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace passes
 {
@@ -29,13 +31,11 @@ std::vector<glm::vec3> gather(const image::Image& picture, const std::vector<uin
     return result;
 }
 
-ChainPoint pointOf(uint32_t frame, const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& now,
-                   uint32_t runs)
+// Is this frame one of those that the next point M = 2, 4, 8, ... is compared with?
+bool isAwaited(uint32_t frame)
 {
-    return {.frame = frame,
-            .pixels = now.size() / runs,
-            .autocovariance = statistics::meanCovariance(channels(before), channels(now), runs),
-            .variance = statistics::meanCovariance(channels(now), channels(now), runs)};
+    const uint32_t lag = std::bit_ceil(frame + 1) - frame;
+    return std::has_single_bit(lag) && (lag == 1 || lag <= std::min(MAX_LAG, (frame + lag) / 2));
 }
 
 // For the path tracer, each channel itself.
@@ -65,25 +65,57 @@ Chain::Chain(Renderer& renderer, Sequence sequence) : renderer_(renderer), seque
 
 void Chain::step()
 {
-    const uint32_t runs = renderer_.runs();
     ++frame_;
     sequence_.bring(renderer_, int64_t(frame_) - 1);
     renderer_.renderFrame();
-    if (std::has_single_bit(frame_ + 1)) before_ = renderer_.read(LAST_FRAME);
-    if (frame_ == 1 || !std::has_single_bit(frame_)) return;
-    const image::Image now = renderer_.read(LAST_FRAME);
-    if (!sequence_.moves()) {
-        points_.push_back(pointOf(frame_, before_.pixels, now.pixels, runs));
-        return;
-    }
-    std::vector<uint32_t> there, here;
+    if (sequence_.moves() && !held_.empty()) follow();
+    if (frame_ > 1 && std::has_single_bit(frame_)) take();
+    if (!isAwaited(frame_)) return;
+    Held held{.frame = frame_, .picture = renderer_.read(LAST_FRAME), .pixels = {}};
+    held.pixels.resize(held.picture.pixels.size() / renderer_.runs());
+    std::iota(held.pixels.begin(), held.pixels.end(), 0u);
+    held_.push_back(std::move(held));
+}
+
+void Chain::follow()
+{
     const std::vector<uint32_t> previous = renderer_.readPreviousPixels();
-    for (uint32_t pixel = 0; pixel < previous.size(); ++pixel) {
-        if (previous[pixel] == shared::NO_NEIGHBOR) continue;
-        there.push_back(previous[pixel]);
-        here.push_back(pixel);
+    for (Held& held : held_) {
+        const std::vector<uint32_t> before = held.pixels;
+        for (size_t i = 0; i < previous.size(); ++i)
+            held.pixels[i] = previous[i] == shared::NO_NEIGHBOR ? previous[i] : before[previous[i]];
     }
-    if (!here.empty()) points_.push_back(pointOf(frame_, gather(before_, there, runs), gather(now, here, runs), runs));
+}
+
+void Chain::take()
+{
+    const uint32_t runs = renderer_.runs();
+    const image::Image now = renderer_.read(LAST_FRAME);
+    ChainPoint point{.frame = frame_};
+    for (const Held& held : std::exchange(held_, {})) { // the last one is the frame before
+        std::vector<uint32_t> there, here;
+        for (uint32_t pixel = 0; pixel < held.pixels.size(); ++pixel) {
+            if (held.pixels[pixel] == shared::NO_NEIGHBOR) continue;
+            there.push_back(held.pixels[pixel]);
+            here.push_back(pixel);
+        }
+        if (here.empty()) continue;
+        const std::vector<glm::vec3> x = gather(held.picture, there, runs), y = gather(now, here, runs);
+        const statistics::BatchValue autocovariance = statistics::meanCovariance(channels(x), channels(y), runs);
+        if (const uint32_t lag = frame_ - held.frame; lag > 1) {
+            point.lags.insert(point.lags.begin(), {lag, autocovariance});
+        } else {
+            point.pixels = here.size();
+            point.autocovariance = autocovariance;
+            point.variance = statistics::meanCovariance(channels(y), channels(y), runs);
+        }
+    }
+    if (point.pixels == 0) return;
+    if (!sequence_.moves()) {
+        const image::Image film = renderer_.read(MEAN);
+        point.film = statistics::meanCovariance(channels(film.pixels), channels(film.pixels), runs);
+    }
+    points_.push_back(std::move(point));
 }
 
 void LawMeter::Sums::add(double c, double s, double n)
@@ -184,7 +216,8 @@ Settings emissionSettings(Settings settings)
 bool lawHolds(const Settings& settings, bool sameView)
 {
     const bool own = colorReading(settings) == Color::Variate && settings.colorConfidence < settings.maxConfidence;
-    return settings.temporal && settings.spatial == 0 && sameView && !own;
+    const bool mutated = settings.mutate != Mutate::Off && !accumulates(settings); // the law knows frozen samples
+    return settings.temporal && settings.spatial == 0 && sameView && !own && !mutated;
 }
 
 bool accumulates(const Settings& settings)
@@ -194,12 +227,24 @@ bool accumulates(const Settings& settings)
 }
 
 // Frame M shows c_M = S chi(Y_M), or A_M = c / M + (1 - 1 / M) c_(M-1), c the single frame M alone: the mean of c_M
-// over which of the two was chosen. So frames covary by (1 - 1 / M) Var c_(M-1), or by (1 - 1 / M) Var A_(M-1), with
+// over which of the two was chosen. So frames n and M covary by n / M Var c_n, or by n / M Var A_n, with
 // Var c_n = V / n + (1 - 1 / n) P and Var A_n = V / n^2 + (1 - 1 / n)^2 Var c_(n-1).
-statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame)
+statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame, double lag)
 {
-    const double kept = color == Color::Chosen ? 1 : 1 - 2 / std::max(frame - 1, 2.0);
-    return statistics::combination(1 / frame, law.variance, (1 - 2 / frame) * kept, law.plateau);
+    const double n = frame - lag, kept = color == Color::Chosen ? 1 : 1 - 2 / std::max(n, 2.0);
+    return statistics::combination(1 / frame, law.variance, (n - 1) / frame * kept, law.plateau);
+}
+
+// The mean of what frames covary by, over all pairs of frames.
+statistics::BatchValue predictedFilm(const FrameLaw& law, uint32_t frame)
+{
+    double variance = 0, plateau = 0;
+    for (double later = 1; later <= frame; ++later) { // with itself, and twice with all before
+        variance += (2 * later - 1) / later;
+        plateau += (later - 1) * (later - 1) / later;
+    }
+    const double pairs = double(frame) * double(frame);
+    return statistics::combination(variance / pairs, law.variance, plateau / pairs, law.plateau);
 }
 
 } // namespace passes

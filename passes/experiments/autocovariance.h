@@ -3,6 +3,7 @@
 // runs, and what the closed form says about it (docs/DECISIONS.md, "Measuring").
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -14,18 +15,28 @@
 namespace passes
 {
 
+// Frames that lie further apart than the last two.
+struct LagPoint {
+    uint32_t lag = 0;                      // frames
+    statistics::BatchValue autocovariance; // of the frames M - lag and M, radiance^2
+    bool operator==(const LagPoint&) const = default;
+};
+constexpr uint32_t MAX_LAG = 64;
+
 // Frames M-1 and M of a batch of runs, averaged over pixels and channels.
 struct ChainPoint {
-    uint32_t frame = 0;                    // M, counted from 1
-    uint64_t pixels = 0;                   // of one run, that counted
-    statistics::BatchValue autocovariance; // radiance^2
-    statistics::BatchValue variance;       // of frame M alone, radiance^2
+    uint32_t frame = 0;                         // M, counted from 1
+    uint64_t pixels = 0;                        // of one run, that counted
+    statistics::BatchValue autocovariance;      // radiance^2
+    statistics::BatchValue variance;            // of frame M alone, radiance^2
+    std::optional<statistics::BatchValue> film; // variance of the mean of the frames 1 .. M; none where something moves
+    std::vector<LagPoint> lags;                 // 2, 4, 8 ... up to M / 2 and MAX_LAG
     bool operator==(const ChainPoint&) const = default;
 };
 
 // Takes the points M = 2, 4, 8, ... of a renderer's runs, frame by frame: all from one chain, since M_c >= M does not
-// bind before. Where something moves a pixel of frame M pairs with the one that saw the same point in frame M-1; pixels
-// without one do not count.
+// bind before. Where something moves a pixel of frame M pairs with the one that saw the same point in the earlier
+// frame; pixels without one do not count.
 class Chain
 {
   public:
@@ -37,8 +48,16 @@ class Chain
   private:
     Renderer& renderer_;
     Sequence sequence_;
+    // A frame that a later one will be compared with, and the pixel of it that saw what each pixel sees by now.
+    struct Held {
+        uint32_t frame;
+        image::Image picture;
+        std::vector<uint32_t> pixels; // shared::NO_NEIGHBOR: none
+    };
+    void follow(); // the held frames' pixels, into this frame
+    void take();   // this frame's point
     uint32_t frame_ = 0;
-    image::Image before_;
+    std::vector<Held> held_;
     std::vector<ChainPoint> points_;
 };
 
@@ -93,9 +112,12 @@ bool lawHolds(const Settings& settings, bool sameView);
 // resting camera's chain is the mean of the path tracer's frames.
 bool accumulates(const Settings& settings);
 
-// The autocovariance between frames M-1 and M <= M_c + 1 that the law predicts, for each way of reading color: of
-// chosen samples V / M + (1 - 2 / M) P; of all with their weights V / M + (1 - 2 / M) (1 - 2 / (M - 1)) P, where the
-// first frame shows whole trees, so that for M = 2 the law of the path tracer is to be given.
-statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame);
+// The autocovariance between frames n = M - lag and M <= M_c + 1 that the law predicts, for each way of reading color:
+// of chosen samples V / M + (n - 1) / M P; of all with their weights V / M + (n - 1) / M (1 - 2 / n) P, where the first
+// frame shows whole trees, so that for n = 1 the law of the path tracer is to be given.
+statistics::BatchValue predictedAutocovariance(const FrameLaw& law, Color color, double frame, double lag = 1);
+
+// The variance of the mean of the frames 1 .. M, of chosen samples: about 2 V / M + P / 2 for large M.
+statistics::BatchValue predictedFilm(const FrameLaw& law, uint32_t frame);
 
 } // namespace passes

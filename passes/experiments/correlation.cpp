@@ -4,7 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <tuple>
+
+#include <fmt/format.h>
 
 #include "engine/base/csv.h"
 
@@ -57,13 +60,16 @@ std::vector<uint32_t> framesUpTo(uint32_t last)
 CurvePoint pointAt(uint32_t frame, const Batches& batches, const std::string& method)
 {
     CurvePoint point{.frame = frame};
-    std::vector<statistics::BatchValue> autocovariances, variances;
+    std::vector<statistics::BatchValue> autocovariances, variances, films;
+    std::map<uint32_t, std::vector<statistics::BatchValue>> lags;
     for (const CorrelationBatch& batch : batches) {
         if (batch.method != method) continue;
         for (const ChainPoint& own : batch.points) {
             if (own.frame != frame) continue;
             autocovariances.push_back(own.autocovariance);
             variances.push_back(own.variance);
+            if (own.film) films.push_back(*own.film);
+            for (const LagPoint& lag : own.lags) lags[lag.lag].push_back(lag.autocovariance);
             point.pixels += own.pixels;
             point.runs += batch.runs;
         }
@@ -71,7 +77,20 @@ CurvePoint pointAt(uint32_t frame, const Batches& batches, const std::string& me
     if (point.runs > 0) point.pixels /= autocovariances.size();
     point.autocovariance = statistics::combine(autocovariances);
     point.variance = statistics::combine(variances);
+    if (!films.empty()) point.film = statistics::combine(films);
+    for (const auto& [lag, values] : lags) point.lags.push_back({lag, statistics::combine(values), std::nullopt});
     return point;
+}
+
+// What the law says of frames further apart, and of their mean, where it is known.
+void predictFurther(CurvePoint& point, const Batches& own, const Settings& settings)
+{
+    const Color color = accumulates(settings) ? Color::Chosen : settings.color; // P is 0: all one
+    for (LagEstimate& lag : point.lags)
+        lag.law =
+            laws(own, [&](const FrameLaw& law) { return predictedAutocovariance(law, color, point.frame, lag.lag); });
+    if (point.film && color == Color::Chosen)
+        point.filmLaw = laws(own, [&](const FrameLaw& law) { return predictedFilm(law, point.frame); });
 }
 
 } // namespace
@@ -109,6 +128,7 @@ void evaluate(Correlation& correlation, const std::vector<NamedMethod>& methods,
             if (!single.empty() && known)
                 point.law =
                     laws(single, [&](const FrameLaw& law) { return predictedAutocovariance(law, color, frame); });
+            if (!own.empty() && known) predictFurther(point, own, method.settings);
             if (point.runs > 0 || point.law) curve.points.push_back(point);
         }
         correlation.curves.push_back(std::move(curve));
@@ -128,8 +148,14 @@ std::optional<statistics::Interval> crossover(const Correlation& correlation, co
 
 std::string csvOf(const Correlation& correlation)
 {
-    Csv csv({"scene", "method", "shift", "max_confidence", "runs", "pixels", "autocovariance", "ci_low", "ci_high",
-             "predicted", "sigma2", "plateau", "standard_error", "predicted_error", "z", "variance"});
+    std::vector<std::string> columns = {"scene",    "method",         "shift",          "max_confidence",  "runs",
+                                        "pixels",   "autocovariance", "ci_low",         "ci_high",         "predicted",
+                                        "sigma2",   "plateau",        "standard_error", "predicted_error", "z",
+                                        "variance", "film",           "film_predicted"};
+    for (uint32_t lag = 2; lag <= MAX_LAG; lag *= 2)
+        for (const char* name : {"lag_{}", "lag_{}_error", "lag_{}_predicted"})
+            columns.push_back(fmt::format(fmt::runtime(name), lag));
+    Csv csv(columns);
     for (const Curve& curve : correlation.curves) {
         std::string shift;
         for (const auto& [name, value] : toText(curve.method.settings))
@@ -141,12 +167,32 @@ std::string csvOf(const Correlation& correlation)
             const bool measured = point.runs > 0;
             const statistics::Interval interval = statistics::meanInterval(point.autocovariance);
             const auto number = [&](double value) { return csvNumber(measured ? value : NO_VALUE); };
-            csv.row({correlation.scene, curve.method.name, shift, std::to_string(point.frame),
-                     std::to_string(point.runs), std::to_string(point.pixels), number(point.autocovariance.mean),
-                     number(interval.low), number(interval.high), meanOf(point.law), meanOf(correlation.sigma2),
-                     meanOf(curve.plateau), number(std::sqrt(point.autocovariance.varianceOfMean)),
-                     csvNumber(point.law ? std::sqrt(point.law->varianceOfMean) : NO_VALUE), csvNumber(point.z()),
-                     number(point.variance.mean)});
+            std::vector<std::string> row = {correlation.scene,
+                                            curve.method.name,
+                                            shift,
+                                            std::to_string(point.frame),
+                                            std::to_string(point.runs),
+                                            std::to_string(point.pixels),
+                                            number(point.autocovariance.mean),
+                                            number(interval.low),
+                                            number(interval.high),
+                                            meanOf(point.law),
+                                            meanOf(correlation.sigma2),
+                                            meanOf(curve.plateau),
+                                            number(std::sqrt(point.autocovariance.varianceOfMean)),
+                                            csvNumber(point.law ? std::sqrt(point.law->varianceOfMean) : NO_VALUE),
+                                            csvNumber(point.z()),
+                                            number(point.variance.mean),
+                                            meanOf(point.film),
+                                            meanOf(point.filmLaw)};
+            for (uint32_t lag = 2; lag <= MAX_LAG; lag *= 2) {
+                const auto own = std::ranges::find(point.lags, lag, &LagEstimate::lag);
+                const bool known = own != point.lags.end();
+                row.push_back(csvNumber(known ? own->autocovariance.mean : NO_VALUE));
+                row.push_back(csvNumber(known ? std::sqrt(own->autocovariance.varianceOfMean) : NO_VALUE));
+                row.push_back(known ? meanOf(own->law) : csvNumber(NO_VALUE));
+            }
+            csv.row(row);
         }
     }
     return csv.text();

@@ -25,14 +25,22 @@ struct CorrelationBatch {
 };
 constexpr const char* PATH_TRACER = "pt";
 
-struct CurvePoint {
-    uint32_t frame = 0;                      // M
-    uint32_t runs = 0;                       // 0: not measured
-    uint64_t pixels = 0;                     // of a run, mean over batches
+struct LagEstimate {
+    uint32_t lag = 0;
     statistics::Estimate autocovariance;     // radiance^2
-    statistics::Estimate variance;           // of frame M
-    std::optional<statistics::Estimate> law; // predicted autocovariance
-    double z() const;                        // measured against predicted, in standard errors; nan without either
+    std::optional<statistics::Estimate> law; // predicted
+};
+
+struct CurvePoint {
+    uint32_t frame = 0;                                // M
+    uint32_t runs = 0;                                 // 0: not measured
+    uint64_t pixels = 0;                               // of a run, mean over batches
+    statistics::Estimate autocovariance;               // radiance^2
+    statistics::Estimate variance;                     // of frame M
+    std::optional<statistics::Estimate> law;           // predicted autocovariance
+    std::optional<statistics::Estimate> film, filmLaw; // variance of the mean of all frames, measured and predicted
+    std::vector<LagEstimate> lags;                     // of frames further apart
+    double z() const; // measured against predicted, in standard errors; nan without either
 };
 
 struct Curve {

@@ -81,11 +81,17 @@ std::vector<std::byte> toBytes(const CorrelationBatch& batch)
                        {"plateau", toJson(batch.law->plateau)},
                        {"floor", toJson(batch.law->floor)},
                        {"mean", toJson(batch.law->mean)}};
-    for (const ChainPoint& point : batch.points)
+    for (const ChainPoint& point : batch.points) {
+        Json lags = Json::array();
+        for (const LagPoint& lag : point.lags)
+            lags.push_back({{"lag", lag.lag}, {"autocovariance", toJson(lag.autocovariance)}});
         json["points"].push_back({{"frame", point.frame},
                                   {"pixels", point.pixels},
                                   {"autocovariance", toJson(point.autocovariance)},
-                                  {"variance", toJson(point.variance)}});
+                                  {"variance", toJson(point.variance)},
+                                  {"film", point.film ? toJson(*point.film) : Json()},
+                                  {"lags", std::move(lags)}});
+    }
     const std::vector<uint8_t> cbor = Json::to_cbor(json);
     const auto bytes = std::as_bytes(std::span(cbor));
     return {bytes.begin(), bytes.end()};
@@ -106,11 +112,18 @@ CorrelationBatch fromBytes(std::span<const std::byte> bytes)
                          .plateau = valueOf(law.at("plateau")),
                          .floor = pictureOf(law.at("floor")),
                          .mean = pictureOf(law.at("mean"))};
-        for (const Json& point : json.at("points"))
-            batch.points.push_back({.frame = point.at("frame"),
-                                    .pixels = point.at("pixels"),
-                                    .autocovariance = valueOf(point.at("autocovariance")),
-                                    .variance = valueOf(point.at("variance"))});
+        for (const Json& point : json.at("points")) {
+            ChainPoint& own =
+                batch.points.emplace_back(ChainPoint{.frame = point.at("frame"),
+                                                     .pixels = point.at("pixels"),
+                                                     .autocovariance = valueOf(point.at("autocovariance")),
+                                                     .variance = valueOf(point.at("variance")),
+                                                     .film = {},
+                                                     .lags = {}});
+            if (const Json& film = point.at("film"); !film.is_null()) own.film = valueOf(film);
+            for (const Json& lag : point.at("lags"))
+                own.lags.push_back({.lag = lag.at("lag"), .autocovariance = valueOf(lag.at("autocovariance"))});
+        }
         return batch;
     } catch (const nlohmann::json::exception& error) {
         throw Error("This is no batch of correlate: {}.", error.what());

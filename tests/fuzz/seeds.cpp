@@ -104,7 +104,12 @@ std::vector<File> correlationBatch()
                              .index = 7,
                              .runs = 3,
                              .law = passes::FrameLaw{.variance = value, .plateau = value, .floor = {{1, 2, 3}}},
-                             .points = {{.frame = 2, .pixels = 9, .autocovariance = value, .variance = value}}})};
+                             .points = {{.frame = 2,
+                                         .pixels = 9,
+                                         .autocovariance = value,
+                                         .variance = value,
+                                         .film = value,
+                                         .lags = {{2, value}}}}})};
 }
 
 std::vector<File> windowMemory()

@@ -90,7 +90,7 @@ const std::vector<PlantedError>& plantedErrors()
         // Of these the toy knows nothing: they are in what it stands for.
         {"MissingGeometryTerm", "path/shift.glsl", "abs(dot(at.geometricNormal, direction)) / squared;",
          "abs(dot(at.geometricNormal, direction));"},
-        {"MissingDeparture", "path/reconnection.glsl", "x.arrival * x.departure;", "x.arrival;"},
+        {"MissingDeparture", "path/reconnection.glsl", "arrival : arrival * departure;", "arrival : arrival;"},
         // Faults that the program had until they were mended, each taken out of its mend again.
         {"SkyDecodedTwice", "scene/lights.glsl", "        vec4 environment = loadTexel(texel);\n",
          "        texel.y = min(uint(acos(clamp(l.direction.y, -1.0, 1.0)) / PI * float(scene.environmentHeight)),\n"

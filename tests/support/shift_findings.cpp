@@ -188,7 +188,7 @@ ShiftFindings findingsOf(ShiftLab& lab, Shift shift, uint32_t treesPerPixel)
             continue;
         }
         if (!isDrawn) {
-            for (Tally* tally : {&found.back, &found.product, &found.jacobian}) tally->add(1);
+            for (Tally* tally : {&found.back, &found.product, &found.jacobian, &found.density}) tally->add(1);
             continue;
         }
         const dvec3 arrived = dvec3(away[i].f) / double{path.density},
@@ -199,6 +199,7 @@ ShiftFindings findingsOf(ShiftLab& lab, Shift shift, uint32_t treesPerPixel)
         found.back.add(isDone(back[i]) ? relative(dvec3(back[i].f), measured(path)) : 1);
         found.product.add(std::abs(j * jBack - 1));
         found.jacobian.add(relative(arrived, dvec3(there[i].f) * numeric));
+        found.density.add(std::abs(double{away[i].density.x} / double{there[i].density} - 1));
         ++found.kinds[kindOf(path, home[i])];
         ++found.kinds[ENDINGS[size_t(path.suffix.w)]];
     }
@@ -211,6 +212,7 @@ std::vector<std::pair<const char*, const Tally*>> ShiftFindings::tallies() const
             {"T after its inverse", &back},
             {"J times its inverse", &product},
             {"J by its numbers", &jacobian},
+            {"density", &density},
             {"undefined both ways", &undefined}};
 }
 

@@ -33,6 +33,7 @@ struct ShiftFindings {
     Tally back;      // T after its inverse: f(T^-1 T Y) = f(Y)
     Tally product;   // J times its inverse
     Tally jacobian;  // f(T Y) / p(Y), what merges take, is the contribution of u' times the numeric |du'/du|
+    Tally density;   // which the sample carries on, of the path that is drawn there
     Tally undefined; // 1 where T is not defined, but its inverse is
     std::map<std::string, size_t> kinds; // of defined shifts: how many
     std::map<int, size_t> outcomes;      // SHIFT_*; else a shift was not counted as one thing

@@ -39,15 +39,17 @@ void applyWord(passes::Settings& settings, const std::string& word, bool first)
         passes::set(settings, word.substr(0, equals), word.substr(equals + 1));
 }
 
-// Every method with every way of reading its color that shows another picture.
+// Every method with every way of reading its color that shows another picture, with and without mutations.
 std::string allMethods()
 {
     std::string list = "pt";
     for (const passes::Estimator& estimator : passes::estimators())
         for (const char* color : passes::WORDS_OF<passes::Color>) {
-            list += "," + estimator.name;
+            const std::string method = estimator.name + (oneHot(estimator) ? "" : std::string(":color=") + color);
+            for (const char* mutate : passes::WORDS_OF<passes::Mutate>)
+                list += "," + method +
+                        (mutate == passes::WORDS_OF<passes::Mutate>.front() ? "" : std::string(":mutate=") + mutate);
             if (oneHot(estimator)) break;
-            list += std::string(":color=") + color;
         }
     return list;
 }
@@ -88,7 +90,9 @@ void addMethodsOption(CLI::App& app, std::string& list, const std::string& initi
     app.add_option(
            "--methods", list,
            "What is compared, separated by commas: METHOD, or a preset or its FILE.json, then :SHIFT or :NAME=VALUE as "
-           "often as needed, as in rgb-restir:replay:spatial=0; or all: every method with every way of reading color. "
+           "often as needed, as in rgb-restir:replay:spatial=0; or all: every method with every way of reading color, "
+           "with and "
+           "without mutations. "
            "Other settings are common to all.")
         ->option_text("LIST (" + initial + ")");
 }

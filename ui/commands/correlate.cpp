@@ -73,8 +73,10 @@ passes::Settings CorrelateCommand::readSettings()
 std::vector<passes::NamedMethod> CorrelateCommand::readMethods(const passes::Settings& base) const
 {
     std::vector<passes::NamedMethod> list = ui::readMethods(methods, base);
+    const auto isPlain = [](const passes::NamedMethod& method) { return method.settings.method == passes::Method::Pt; };
+    if (methods == "all") std::erase_if(list, isPlain);
     for (const passes::NamedMethod& method : list) {
-        if (method.settings.method == passes::Method::Pt)
+        if (isPlain(method))
             throw UsageError("--methods: \"{}\" has no history; its frames do not depend on each other.", method.name);
         if (passes::lastFrame(method.settings) < 2)
             throw UsageError("--methods: \"{}\" renders {} frame; --frames and --max-confidence must be at least 2.",
@@ -223,8 +225,8 @@ Action setUpCorrelate(CLI::App& app)
     addSceneOptions(app, command->scene, SCENE_DOC)->required();
     app.add_option(
            "-o,--output", command->output,
-           "Directory for correlate.csv, autocovariance.svg, maps, and index.html, which holds them all. Made if "
-           "it is missing.")
+           "Directory for correlate.csv, plots (autocovariance, lags, film), maps, and index.html, which holds them "
+           "all. Made if it is missing.")
         ->option_text("DIR")
         ->required();
     addMethodsOption(app, command->methods, "restir-pt,rgb-restir");

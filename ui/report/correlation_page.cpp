@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -54,36 +56,104 @@ std::string ratioText(const Estimate& a, const Estimate& b)
     return fmt::format("{:.3g} times ({:.3g} to {:.3g})", ratio, ratio / factor, ratio * factor);
 }
 
-Plot plotOf(const Correlation& correlation)
+// A value of a curve: at which M or lag, as far as it is measured, and as far as it is predicted.
+struct Mark {
+    double x;
+    std::optional<Estimate> measured, law;
+};
+
+Plot plotOf(Plot plot, const Correlation& correlation, const std::function<std::vector<Mark>(const Curve&)>& marksOf)
 {
-    Plot plot{.title = "Autocovariance between the frames M-1 and M: " + correlation.scene,
-              .xLabel = "M (frames; M_c >= M)",
-              .yLabel = "autocovariance (radiance^2)",
-              .logX = true,
-              .logY = true};
+    plot.logX = plot.logY = true;
     int color = 0;
     for (const Curve& curve : correlation.curves) {
-        Series measured{.name = curve.method.name, .mark = Series::Mark::Points, .color = color};
+        Series measured{.name = curve.method.name, .mark = Series::Mark::LinePoints, .color = color};
         Series law{.name = curve.method.name + ", law", .mark = Series::Mark::Dashed, .color = color};
-        for (const CurvePoint& point : curve.points) {
-            if (point.runs > 0) {
-                const statistics::Interval interval = statistics::meanInterval(point.autocovariance);
-                measured.x.push_back(point.frame);
-                measured.y.push_back(point.autocovariance.mean);
+        for (const Mark& mark : marksOf(curve)) {
+            if (mark.measured) {
+                const statistics::Interval interval = statistics::meanInterval(*mark.measured);
+                measured.x.push_back(mark.x);
+                measured.y.push_back(mark.measured->mean);
                 measured.low.push_back(interval.low);
                 measured.high.push_back(interval.high);
             }
-            if (point.law) {
-                law.x.push_back(point.frame);
-                law.y.push_back(point.law->mean);
+            if (mark.law) {
+                law.x.push_back(mark.x);
+                law.y.push_back(mark.law->mean);
             }
         }
-        if (correlation.moving) measured.mark = Series::Mark::LinePoints;
-        plot.series.push_back(std::move(measured));
+        if (!law.x.empty()) measured.mark = Series::Mark::Points;
+        if (!measured.x.empty() || !law.x.empty()) plot.series.push_back(std::move(measured));
         if (!law.x.empty()) plot.series.push_back(std::move(law));
         ++color;
     }
     return plot;
+}
+
+std::vector<Mark> marksByFrame(const Curve& curve)
+{
+    std::vector<Mark> marks;
+    for (const CurvePoint& point : curve.points)
+        marks.push_back(
+            {double(point.frame), point.runs > 0 ? std::optional(point.autocovariance) : std::nullopt, point.law});
+    return marks;
+}
+
+std::vector<Mark> marksByLag(const Curve& curve)
+{
+    const CurvePoint* last = lastMeasured(curve);
+    if (last == nullptr) return {};
+    std::vector<Mark> marks = {{1, last->autocovariance, last->law}};
+    for (const passes::LagEstimate& lag : last->lags) marks.push_back({double(lag.lag), lag.autocovariance, lag.law});
+    return marks;
+}
+
+std::vector<Mark> marksOfFilm(const Curve& curve)
+{
+    std::vector<Mark> marks;
+    for (const CurvePoint& point : curve.points)
+        if (point.film) marks.push_back({double(point.frame), point.film, point.filmLaw});
+    return marks;
+}
+
+// Draws what there is to draw, writes the files, and says what the page shows. Nothing without gnuplot.
+Json plotsOf(const Correlation& correlation, const std::filesystem::path& directory)
+{
+    const std::string law = "Dashed: what the law predicts from single frames.";
+    struct Figure {
+        const char* file;
+        Plot plot;
+        std::string caption;
+    };
+    const Figure figures[] = {
+        {"autocovariance.svg",
+         plotOf({.title = "Autocovariance between the frames M-1 and M: " + correlation.scene,
+                 .xLabel = "M (frames; M_c >= M)",
+                 .yLabel = "autocovariance (radiance^2)"},
+                correlation, marksByFrame),
+         "Points: measured, with 95% intervals. " + law},
+        {"lags.svg",
+         plotOf({.title = "Autocovariance between frames that lie further apart: " + correlation.scene,
+                 .xLabel = "lag (frames before the last one measured)",
+                 .yLabel = "autocovariance (radiance^2)"},
+                correlation, marksByLag),
+         "How long a frame is remembered, at the largest M that was measured. " + law},
+        {"film.svg",
+         plotOf({.title = "Variance of the mean of the frames 1 to M: " + correlation.scene,
+                 .xLabel = "M (frames; M_c >= M)",
+                 .yLabel = "variance (radiance^2)"},
+                correlation, marksOfFilm),
+         "Does the film's mean converge? Samples that stay leave half their plateau in it. " + law},
+    };
+    Json list = Json::array();
+    for (const Figure& figure : figures) {
+        if (figure.plot.series.empty()) continue;
+        const std::optional<std::string> svg = drawSvg(figure.plot);
+        if (!svg) continue;
+        writeText(directory / figure.file, *svg);
+        list.push_back({{"svg", inlineSvg(*svg)}, {"caption", figure.caption}});
+    }
+    return list;
 }
 
 Json curvesOf(const Correlation& correlation)
@@ -248,12 +318,10 @@ void writeCorrelation(const std::filesystem::path& directory, const Correlation&
                       const Provenance& provenance)
 {
     writeText(directory / "correlate.csv", csvOf(correlation));
-    const std::optional<std::string> svg = drawSvg(plotOf(correlation));
-    if (svg) writeText(directory / "autocovariance.svg", *svg);
     writeText(directory / "index.html",
               fillPage("{{> correlate.html}}", {{"title", "Autocovariance: " + correlation.scene},
                                                 {"verdicts", verdictsOf(correlation)},
-                                                {"plot", svg ? inlineSvg(*svg) : ""},
+                                                {"plots", plotsOf(correlation, directory)},
                                                 {"provenance", provenanceData(provenance)},
                                                 {"floors", floorsOf(correlation, directory)},
                                                 {"curves", curvesOf(correlation)},

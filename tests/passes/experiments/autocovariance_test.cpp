@@ -129,6 +129,24 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
             // Else the agreement says little.
             EXPECT_LT(difference.standardError, 0.06 * predicted.mean) << int(method) << " " << point.frame;
         }
+        // Frames further apart, and the mean of all.
+        const auto expectPredicted = [&](const statistics::BatchValue& value, const statistics::BatchValue& law_,
+                                         const std::string& what) {
+            const statistics::Estimate measured = statistics::combine(std::span(&value, 1));
+            const statistics::Estimate predicted = statistics::combine(std::span(&law_, 1));
+            const statistics::Difference difference = statistics::compare(measured, predicted);
+            EXPECT_GT(difference.p, 1e-4) << "method " << int(method) << ", color " << int(color) << ", " << what
+                                          << ": " << measured.mean << " against " << predicted.mean;
+            EXPECT_LT(difference.standardError, 0.06 * predicted.mean) << what;
+        };
+        const passes::FrameLaw& single = color == Color::Variate ? plain : law;
+        ASSERT_EQ(points.back().lags.size(), 6u);
+        for (const passes::LagPoint& lag : points.back().lags)
+            expectPredicted(lag.autocovariance, passes::predictedAutocovariance(single, color, FRAMES, lag.lag),
+                            "lag " + std::to_string(lag.lag));
+        ASSERT_TRUE(points.back().film);
+        if (color != Color::Weighted)
+            expectPredicted(*points.back().film, passes::predictedFilm(single, FRAMES), "film");
         const double last = points.back().autocovariance.value;
         if (method == Method::RgbRestir || color == Color::Variate) {
             if (method == Method::RgbRestir) {
@@ -142,6 +160,37 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
             EXPECT_NEAR(last - law.variance.value / FRAMES, plateau.mean, 0.05 * plateau.mean);
         }
         for (const auto& [stage, count] : own.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
+    }
+}
+
+// Samples that history holds are exchanged for others: a frame is as noisy, one long before has nothing to do with it,
+// and so the mean of all frames goes on converging. Where the picture knows no single sample nothing changes.
+TEST_F(Autocovariance, MutationsThawFrozenSamples)
+{
+    constexpr uint32_t RUNS = 64, FRAMES = 128;
+    const scene::Scene scene = hues();
+    const auto last = [&](Method method, Color color, passes::Mutate mutate) {
+        Settings s = settings(method);
+        s.color = color;
+        s.mutate = mutate;
+        Renderer own = renderer(scene, s, RUNS);
+        const passes::ChainPoint point = chainOf(own, FRAMES).back();
+        for (const auto& [stage, count] : own.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
+        EXPECT_EQ(own.stats().mutations.at("accepted") > 0, mutate == passes::Mutate::Free);
+        return point;
+    };
+    using enum passes::Mutate;
+    const passes::ChainPoint frozen = last(Method::RestirPt, Color::Chosen, Off);
+    const passes::ChainPoint thawed = last(Method::RestirPt, Color::Chosen, Free);
+    EXPECT_NEAR(thawed.variance.value, frozen.variance.value, 0.1 * frozen.variance.value);
+    EXPECT_LT(thawed.autocovariance.value, 0.9 * frozen.autocovariance.value);
+    EXPECT_LT(thawed.lags.back().autocovariance.value, 0.3 * frozen.lags.back().autocovariance.value);
+    EXPECT_LT(thawed.film->value, 0.5 * frozen.film->value);
+    for (const auto& [method, color] :
+         {std::pair(Method::RgbRestir, Color::Chosen), {Method::RestirPt, Color::Variate}}) {
+        const passes::ChainPoint off = last(method, color, Off), free = last(method, color, Free);
+        EXPECT_NEAR(free.autocovariance.value, off.autocovariance.value, 1e-5 * off.autocovariance.value);
+        EXPECT_NEAR(free.film->value, off.film->value, 1e-5 * off.film->value);
     }
 }
 

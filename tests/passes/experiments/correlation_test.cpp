@@ -36,6 +36,13 @@ TEST(Correlation, MeasuresPredictsAndFindsTheCrossover)
     }
     EXPECT_NEAR(correlation.curves[0].points.back().law->mean, 0.1 + 0.098, 1e-12);
     EXPECT_NEAR(correlation.curves[1].points.back().law->mean, 0.08, 1e-12);
+    // The mean of four frames: of V the pairs' (1 + 3/2 + 5/3 + 7/4) / 16, of P (1/2 + 4/3 + 9/4) / 16.
+    ASSERT_TRUE(correlation.curves[0].points[1].filmLaw);
+    EXPECT_NEAR(correlation.curves[0].points[1].film->mean, 5.5, 1e-12);
+    EXPECT_NEAR(correlation.curves[0].points[1].filmLaw->mean, 10 * (71.0 / 12) / 16 + 0.1 * (49.0 / 12) / 16, 1e-12);
+    ASSERT_EQ(correlation.curves[1].points[1].lags.size(), 1u);
+    EXPECT_NEAR(correlation.curves[1].points[1].lags[0].autocovariance.mean, 2, 1e-12);
+    EXPECT_NEAR(correlation.curves[1].points[1].lags[0].law->mean, 2, 1e-12);
     const auto cross = crossover(correlation, correlation.curves[0]);
     ASSERT_TRUE(cross);
     EXPECT_LT(cross->low, 80);

@@ -38,8 +38,9 @@ inline std::vector<passes::CorrelationBatch> exact(uint32_t index)
     passes::CorrelationBatch one{.method = "restir-pt", .index = index, .runs = 3, .law = law(10, 0.1)};
     passes::CorrelationBatch each{.method = "rgb-restir", .index = index, .runs = 3};
     for (const uint32_t frame : {2u, 4u}) {
-        one.points.push_back({frame, 2, about(10.0 / frame + (1 - 2.0 / frame) * 0.1), about(6)});
-        each.points.push_back({frame, 2, about(8.0 / frame), about(5)});
+        one.points.push_back({frame, 2, about(10.0 / frame + (1 - 2.0 / frame) * 0.1), about(6), about(5.5), {}});
+        each.points.push_back({frame, 2, about(8.0 / frame), about(5), std::nullopt, {}});
+        if (frame == 4) each.points.back().lags = {{2, about(8.0 / frame)}};
     }
     return {plain, one, each};
 }

@@ -30,6 +30,8 @@ uint endingOf(PathSample y)
     return light.dirac ? DIRAC_SAMPLED : light.infinite ? SKY_SAMPLED : LAMP_SAMPLED;
 }
 
+bool seeks(uint pathId) { return true; }
+bool seeksBeyond(uint k) { return true; }
 void offer(PathSample y, vec3 f, float density)
 {
     Reconnection r = y.reconnection;

@@ -46,7 +46,8 @@ void main()
     Reservoir r[MAX_RESERVOIRS];
     for (uint c = 0u; c < MAX_RESERVOIRS; ++c) r[c] = EMPTY;
     r[0].chosen = PathSample(PathSeed(path.seedFrame, path.seedPixel), path.pathId, path.reconnectionIndex,
-                             Reconnection(path.triangle, path.barycentric, path.direction.w, path.direction.xyz, path.suffix.xyz));
+                             Reconnection(path.triangle, path.barycentric, path.direction.w, path.direction.xyz, path.suffix.xyz),
+                             path.density);
     r[0].weightSum = 1.0;
     vec3 f[MAX_RESERVOIRS];
     shiftInto(makeDomain(destinations[i], false), r, f);
@@ -56,6 +57,7 @@ void main()
     result.f = vec4(f[0], -1.0);
     for (uint o = 0u; o < SHIFT_OUTCOMES; ++o) // one, and once: else -1 stays, or the sum is none
         if (shiftOutcomes[o] != 0u) result.f.w = result.f.w < 0.0 && shiftOutcomes[o] == 1u ? float(o) : 100.0;
+    result.density = vec4(renewed(0u).density);
     result.before = before;
     result.at = nowhere;
     for (uint k = 0u; k < 3u; ++k) result.corners[k] = vec4(0.0);

@@ -86,11 +86,14 @@ const ShiftError ERRORS[] = {
       {"path/shift.glsl", "abs(dot(at.geometricNormal, direction)) / squared", "1.0 / squared"}},
      &ShiftFindings::jacobian},
     {"MissingDensity",
-     {{"path/reconnection.glsl", "x.arrival * x.departure;", "x.arrival;"}},
+     {{"path/reconnection.glsl", "arrival : arrival * departure;", "arrival : arrival;"}},
      &ShiftFindings::jacobian},
     {"JacobianTimes1_02",
-     {{"path/shift.glsl", "x.throughput * f * (infinite", "1.02 * x.throughput * f * (infinite"}},
+     {{"path/shift.glsl", "x.throughput * f * measure", "1.02 * x.throughput * f * measure"}},
      &ShiftFindings::home},
+    {"DensityOfWhereItCameFrom",
+     {{"path/shift.glsl", "pdf * measure, departure);\n            settle", "pdf, departure);\n            settle"}},
+     &ShiftFindings::density},
 };
 
 class ShiftErrors : public GpuTest, public testing::WithParamInterface<ShiftError>

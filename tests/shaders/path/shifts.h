@@ -51,6 +51,7 @@ struct Scattering {
 
 struct ShiftedPath {
     vec4 f;            // xyz: f(T Y); w: outcome, SHIFT_*
+    vec4 density;      // x: of f's measure over primary sample space, there
     Scattering before; // x_(r-1)
     Scattering at;     // x_r
     vec4 corners[3];   // xyz: of x_r's triangle
