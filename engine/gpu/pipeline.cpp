@@ -215,6 +215,7 @@ ComputePipeline Device::createComputePipeline(const ComputePipelineDescriptor& d
         for (const Constant& constant : constants)
             if (constant.name == "STORES_IN_STORAGE") pipeline->storesInStorage = constant.value != 0;
         createLayout(*pipeline);
+        if (tuning.shaders == Tuning::Shaders::Pruned) spirv = std::move(reflection.pruned);
         if (tuning.contraction == Tuning::Contraction::Forbidden) spirv = withoutContraction(spirv);
         if (tuning.shaders == Tuning::Shaders::Simplified) spirv = simplified(spirv, shader, reflection.constants);
         compile(*pipeline, spirv, reflection.constants);

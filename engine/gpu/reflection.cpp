@@ -8,6 +8,7 @@
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <algorithm>
+#include <functional>
 #include <unordered_map>
 
 namespace gpu
@@ -189,9 +190,10 @@ void dropUnusedSubgroupArithmetic(std::vector<uint32_t>& spirv)
     if (named != 0 && !used) spirv.erase(at, at + 2);
 }
 
-// The same shader with its constants set for good, so that all sizes in it are plain numbers.
+// The same shader with its constants set for good, so that all sizes in it are plain numbers, after more passes.
 std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string& label,
-                             const std::map<uint32_t, uint32_t>& constants, bool simplify)
+                             const std::map<uint32_t, uint32_t>& constants,
+                             const std::function<void(spvtools::Optimizer&)>& addPasses)
 {
     std::unordered_map<uint32_t, std::vector<uint32_t>> values;
     for (const auto& [id, value] : constants) values[id] = {value};
@@ -202,11 +204,10 @@ std::vector<uint32_t> freeze(std::span<const uint32_t> spirv, const std::string&
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
-    if (simplify) optimizer.RegisterPerformancePasses();
+    addPasses(optimizer);
     std::vector<uint32_t> frozen;
     if (!optimizer.Run(spirv.data(), spirv.size(), &frozen))
         throw Error("Shader \"{}\" is not valid SPIR-V: {}.", label, problem);
-    if (simplify) dropUnusedSubgroupArithmetic(frozen);
     return frozen;
 }
 
@@ -217,18 +218,26 @@ Reflection reflect(std::span<const uint32_t> spirv, const std::string& label, bo
 {
     Reflection result;
     inspect(spirv, label).readConstants(constants, result);
-    const std::vector<uint32_t> frozen = freeze(spirv, label, result.constants, false);
-    const Inspector inspector = inspect(frozen, label);
+    result.pruned = freeze(spirv, label, result.constants, [](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPass(spvtools::CreateCCPPass())
+            .RegisterPass(spvtools::CreateDeadBranchElimPass())
+            .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+            .RegisterPass(spvtools::CreateAggressiveDCEPass(true)); // but bindings, used or not
+    });
+    const Inspector inspector = inspect(result.pruned, label);
     result.bindings = inspector.bindings(tablesAreTexelBuffers);
     inspector.readWorkgroupSize(result);
-    result.sharedBytes = inspector.sharedBytes(frozen);
+    result.sharedBytes = inspector.sharedBytes(result.pruned);
     return result;
 }
 
 std::vector<uint32_t> simplified(std::span<const uint32_t> spirv, const std::string& label,
                                  const std::map<uint32_t, uint32_t>& constants)
 {
-    return freeze(spirv, label, constants, true);
+    std::vector<uint32_t> lean =
+        freeze(spirv, label, constants, [](spvtools::Optimizer& optimizer) { optimizer.RegisterPerformancePasses(); });
+    dropUnusedSubgroupArithmetic(lean);
+    return lean;
 }
 
 } // namespace gpu

@@ -16,6 +16,7 @@ struct Reflection {
     std::array<uint32_t, 3> workgroupSize = {1, 1, 1};      // invocations
     std::array<std::string, 3> workgroupSizeConstants = {}; // the names of the constants that set it, if any do
     uint64_t sharedBytes = 0;
+    std::vector<uint32_t> pruned; // the shader without constants, and without what their values rule out
 };
 
 // Constants that the shader lacks are ignored; an unnamed local_size_x_id is called "local_size_x".

@@ -32,8 +32,9 @@ void visitTuning(AnyTuning& tuning, Visit&& visit)
           "rays and shifts are counted by each invocation, as sums of a subgroup, or not at all");
     visit("contraction", tuning.contraction, Names{"allowed", "forbidden"},
           "may drivers make one operation of a product and a sum, with other last bits in each pipeline");
-    visit("shaders", tuning.shaders, Names{"plain", "simplified"},
-          "drivers get shaders as they are, or with constants, functions and variables resolved");
+    visit("shaders", tuning.shaders, Names{"plain", "pruned", "simplified"},
+          "drivers get shaders as they are, without what constants rule out, or with functions and variables resolved, "
+          "too");
 }
 
 void applyOverride(Tuning& tuning, const std::string& name, const std::string& value)
@@ -74,7 +75,7 @@ Tuning tuningFor(const DeviceClass& device)
                 .stack = Tuning::Stack::Registers,
                 .counters = Tuning::Counters::Each,
                 .contraction = Tuning::Contraction::Allowed,
-                .shaders = shaders};
+                .shaders = device.subgroupSums ? Tuning::Shaders::Pruned : Tuning::Shaders::Simplified};
     // SwiftShader: it compiles nested loops that test at their end wrongly, and keeps all variables of all that it
     // inlines in memory: what it compiles in seconds when simplified takes it more than 24 GB as it is.
     return {.tables = Tuning::Tables::Storage,

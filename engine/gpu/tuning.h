@@ -10,12 +10,12 @@ namespace gpu
 {
 
 struct Tuning {
-    enum class Tables : uint32_t { Texel, Storage };          // Usage::Table: texel buffers or storage buffers
-    enum class Loops : uint32_t { End, Start };               // where loops test (shaders/lib/lanes.glsl)
-    enum class Stack : uint32_t { Registers, Array };         // of traversal (shaders/scene/intersect.glsl)
-    enum class Counters : uint32_t { Each, Subgroup, Off };   // how they add (shaders/lib/frame.glsl)
-    enum class Contraction : uint32_t { Allowed, Forbidden }; // of a product and a sum into one operation
-    enum class Shaders : uint32_t { Plain, Simplified };      // as drivers get them
+    enum class Tables : uint32_t { Texel, Storage };             // Usage::Table: texel buffers or storage buffers
+    enum class Loops : uint32_t { End, Start };                  // where loops test (shaders/lib/lanes.glsl)
+    enum class Stack : uint32_t { Registers, Array };            // of traversal (shaders/scene/intersect.glsl)
+    enum class Counters : uint32_t { Each, Subgroup, Off };      // how they add (shaders/lib/frame.glsl)
+    enum class Contraction : uint32_t { Allowed, Forbidden };    // of a product and a sum into one operation
+    enum class Shaders : uint32_t { Plain, Pruned, Simplified }; // as drivers get them
     Tables tables{};
     Loops loops{};
     Stack stack{};

@@ -121,6 +121,22 @@ TEST_F(Pipeline, WorkgroupSizeAndSharedMemoryFollowTheConstants)
     EXPECT_EQ(wide.sharedBytes, 16 * 2 * 16 + 3 * 4u);
 }
 
+// As lavapipe gets them: what is bound stays, used or not.
+TEST_F(Pipeline, PrunedShadersHaveNoConstantsLeftAndAllBindings)
+{
+    const Words spirv = gpu::loadShader("path_trace", true);
+    const gpu::Constant textures[] = {{"HAS_ALPHA", 0u}, {"HAS_BASE_COLOR_TEXTURE", 0u}};
+    const gpu::Reflection all = gpu::reflect(spirv, "test", true, {});
+    const gpu::Reflection before = gpu::reflect(spirv, "test", true, textures);
+    const gpu::Reflection after = gpu::reflect(before.pruned, "test", true, {});
+    ASSERT_GT(before.constants.size(), 20u);
+    EXPECT_TRUE(after.constants.empty());
+    EXPECT_EQ(after.workgroupSize, before.workgroupSize);
+    EXPECT_EQ(after.bindings, all.bindings);
+    EXPECT_LT(before.pruned.size(), all.pruned.size());
+    EXPECT_LT(all.pruned.size(), spirv.size());
+}
+
 // As SwiftShader gets them.
 TEST_F(Pipeline, SimplifiedShadersHaveNoConstantsLeftAndNothingUnused)
 {

@@ -35,7 +35,7 @@ constexpr DeviceClass POOR_CARD = {.cpu = false, .texelTables = false, .subgroup
 TEST(DeviceTuning, FollowsTheDevicesClass)
 {
     EXPECT_EQ(chosenFor(LAVAPIPE),
-              "tables=texel,loops=end,stack=registers,counters=each,contraction=allowed,shaders=plain");
+              "tables=texel,loops=end,stack=registers,counters=each,contraction=allowed,shaders=pruned");
     EXPECT_EQ(chosenFor(SWIFTSHADER),
               "tables=storage,loops=start,stack=array,counters=each,contraction=allowed,shaders=simplified");
     EXPECT_EQ(chosenFor(CARD),
