@@ -12,7 +12,7 @@ TABLE(SET_PASS, 4, HistoryPaths);
 TABLE(SET_PASS, 5, HistoryConfidences);
 TABLE_OUT(SET_PASS, 6, Inspections);
 
-#include "path/path_id.glsl"
+#include "restir/path_id.glsl"
 #include "restir/estimator.glsl"
 #include "restir/reservoir_store.glsl"
 LOAD_RESERVOIRS(Reservoirs, Reservoirs, ReservoirPaths)

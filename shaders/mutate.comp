@@ -9,7 +9,6 @@ TABLE_INOUT(SET_PASS, 1, History);
 TABLE_INOUT(SET_PASS, 2, HistoryPaths);
 
 #include "candidates.glsl"
-#include "path/path_id.glsl"
 #include "restir/mutation.glsl"
 
 void offer(PathSample x, vec3 f, float density)
@@ -20,17 +19,16 @@ void offer(PathSample x, vec3 f, float density)
 
 bool seeks(uint pathId)
 {
-    bool sought = false;
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) sought = sought || awaits(c, pathId);
-    return sought;
+    bool wanted = false;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) wanted = wanted || sought[c] == pathId;
+    return wanted;
 }
 
 bool seeksBeyond(uint k)
 {
-    bool sought = false;
-    for (uint c = 0u; c < RESERVOIR_COUNT; ++c)
-        sought = sought || ((proposed & (1u << c)) != 0u && mutated[c].chosen.pathId > makePathId(k, BY_LIGHT));
-    return sought;
+    bool wanted = false;
+    for (uint c = 0u; c < RESERVOIR_COUNT; ++c) wanted = wanted || sought[c] > makePathId(k, BY_LIGHT);
+    return wanted;
 }
 
 void main()

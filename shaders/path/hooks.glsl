@@ -5,7 +5,7 @@
 #ifndef SHADERS_PATH_HOOKS_GLSL
 #define SHADERS_PATH_HOOKS_GLSL
 
-#include "path/path_id.glsl"
+#include "restir/path_id.glsl"
 #include "restir/reservoir.glsl"
 #include "scene/bsdf.glsl"
 #include "scene/camera.glsl"

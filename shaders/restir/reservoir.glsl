@@ -24,7 +24,7 @@ struct Reconnection {
 // One path of a path tree, by the numbers that drew it. Opaque to resampling, which only moves it about.
 struct PathSample {
     PathSeed seed;
-    uint pathId;            // which path of the tree: path/path_id.glsl
+    uint pathId;            // which path of the tree: restir/path_id.glsl
     uint reconnectionIndex; // r of the reconnection vertex x_r; 0: the whole path is replayed
     Reconnection reconnection; // when reconnectionIndex > 0
     float density;             // f(Y) over this is its contribution in primary sample space; kept for mutations alone

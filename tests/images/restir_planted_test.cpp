@@ -29,6 +29,8 @@ const RestirError ERRORS[] = {
     {"WeightTimes1_02", {"Lambert", RgbRestir, Hybrid, Temporal, true, 8}},
     {"MissingGeometryTerm", {"Room", RgbRestir, Hybrid, Temporal, true, 8}},
     {"MissingDeparture", {"Room", RgbRestir, Hybrid, Temporal, true, 8}},
+    {"MutationWithoutDensities",
+     {"Room", RestirPt, Reconnection, Both, false, 64, 400, 12, passes::Color::Chosen, passes::Mutate::Free}},
     {"MutationByTheDensityElsewhere",
      {"Room", RestirPt, Reconnection, Both, false, 64, 400, 12, passes::Color::Chosen, passes::Mutate::Free}},
     {"MutationForgetsTheDensityInSpace",

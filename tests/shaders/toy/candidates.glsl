@@ -8,7 +8,7 @@ void offer(PathSample y, vec3 f, float density);
 void offerCandidatesOf(Domain domain, PathSeed seed)
 {
     ToyDomain d = domain.toy;
-    for (uint pathId = 0u; pathId < TOY_PATHS; ++pathId) {
+    for (uint pathId = TOY_FIRST_PATH; pathId < TOY_FIRST_PATH + TOY_PATHS; ++pathId) {
         float x = drawn(d, seed, pathId);
         vec3 h = value(d, x, suffixOf(pathId, x), ending(x));
         if (h == vec3(0.0)) continue;

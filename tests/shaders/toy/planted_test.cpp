@@ -96,12 +96,11 @@ const ToyError ERRORS[] = {
      passes::Method::RestirPt,
      passes::Color::Weighted},
     // What mutations of history's samples alone show.
-    {"MutationWithoutDensities", Shift::Hybrid, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
     {"MutationTooOften", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
     {"MutationKeepsAnotherMeasure", Shift::Hybrid, {Temporal, true, 64, 12}, 1024, RGB, CHOSEN, FREE},
     {"MutationToAnotherKind", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
     {"MutationByChosenPathsAlone", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
-    {"MutationByPathsItKnows", Shift::Replay, {Temporal, true, 4, 12}, 2040, LUMINANCE, CHOSEN, FREE},
+    {"MutationForgetsTheOdds", Shift::Replay, {Temporal, false, 64, 12}, 1024, LUMINANCE, CHOSEN, FREE},
     {"MutationInAnotherDomain", Shift::Replay, {Temporal, true, 64, 12}, 1024, RGB, CHOSEN, FREE},
     // What the color estimate beside reservoirs alone shows.
     {"EstimateClamped", Shift::Hybrid, {Temporal, true, 8}, 1024, passes::Method::RestirPt, passes::Color::Variate},

@@ -38,7 +38,7 @@ float drawn(ToyDomain d, PathSeed seed, uint pathId)
 bool canBeKept(ToyDomain d, float x) { return SHIFT_MAP != SHIFT_REPLAY && fract(4.0 * x + d.phase) >= 0.25; }
 
 // What of h depends on x alone is the suffix of a kept path, in two parts.
-vec3 suffixOf(uint pathId, float x) { return cells[pathId * TOY_CELLS + uint(x * float(TOY_CELLS))].rgb; }
+vec3 suffixOf(uint pathId, float x) { return cells[(pathId - TOY_FIRST_PATH) * TOY_CELLS + uint(x * float(TOY_CELLS))].rgb; }
 float ending(float x) { return 1.0 + 2.0 * x; }
 vec3 value(ToyDomain d, float x, vec3 suffix, float end)
 {
