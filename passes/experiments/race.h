@@ -47,6 +47,7 @@ class Race
          const Limits& limits, const std::function<void(double)>& bvhProgress = {});
 
     const Renderer& renderer() const { return *runners_.front().renderer; }
+    Renderer& renderer() { return *runners_.front().renderer; }
 
     // All methods with the seed, in turns whose order rotates. `progress` gets the part done; when `stop` says so the
     // repeat ends as it is.

@@ -5,14 +5,17 @@
 #include "engine/scene/motion.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_tables.h"
+#include "passes/experiments/advice.h"
 #include "passes/renderer.h"
 #include "passes/variant.h"
 #include "ui/cli/device_options.h"
+#include "ui/cli/interrupt.h"
 #include "ui/cli/output_file.h"
 #include "ui/cli/progress.h"
 #include "ui/cli/run_report.h"
 #include "ui/cli/scene_source.h"
 #include "ui/cli/settings_options.h"
+#include "ui/cli/usage_error.h"
 #include "ui/commands/commands.h"
 
 #include <fmt/format.h>
@@ -39,7 +42,7 @@ std::string megabytes(uint64_t bytes)
 struct InfoCommand {
     SceneSource scene;
     std::string json;
-    bool scenes = false, quiet = false;
+    bool scenes = false, advises = false, quiet = false;
     DeviceOptions device;
     SettingsOptions settings;
 
@@ -244,6 +247,24 @@ Json sceneJson(const SceneSource& source, const scene::Scene& world, const passe
             {"warnings", world.warnings}};
 }
 
+Json adviceJson(const passes::Advice& advice)
+{
+    Json rows = Json::array();
+    for (const passes::Advice::Row& row : advice.rows)
+        rows.push_back({{"method", row.method},
+                        {"milliseconds", row.milliseconds},
+                        {"relmse", row.error},
+                        {"gain", row.gain.value},
+                        {"gain_low", row.gain.interval.low},
+                        {"gain_high", row.gain.interval.high}});
+    return {{"best", advice.rows.at(advice.best()).method},
+            {"methods", rows},
+            {"sigma2", advice.variance},
+            {"plateau", advice.plateau},
+            {"crossover", advice.crossover()},
+            {"trees_per_pixel", advice.treesPerPixel}};
+}
+
 void printMotion(const Json& motion)
 {
     size_t index = 0;
@@ -319,6 +340,7 @@ int InfoCommand::run() const
     settings.name(files, chosen);
     files.reads("SCENE", scene.name);
     if (!json.empty()) requireWritable(json);
+    if (advises && (scenes || scene.name.empty())) throw UsageError("--advise measures a scene: name one.");
     Json facts = {{"version", version()}};
     if (scenes) {
         facts["scenes"] = scenesJson();
@@ -340,6 +362,15 @@ int InfoCommand::run() const
         facts["scene"] = sceneJson(scene, world, renderer.stats(), gpu.limits().tableBytes);
         printScene(facts["scene"], chosen);
         fmt::print("Device: {}, tuned {}\n", gpu.adapter().name, gpu::toText(gpu.adapter().tuning));
+        if (advises) {
+            const Interrupt interrupt;
+            const passes::Advice advice = passes::advise(
+                gpu, world, chosen, [&](double done) { progress.show("Measuring", done, 1); },
+                [&] { return interrupt.requested(); });
+            progress.clear();
+            facts["advice"] = adviceJson(advice);
+            for (const std::string& sentence : sentencesOf(advice, chosen)) fmt::print("{}\n", sentence);
+        }
     }
     if (!json.empty()) writeText(json, jsonText(facts, 2) + "\n");
     return 0;
@@ -352,6 +383,9 @@ Action setUpInfo(CLI::App& app)
     const auto command = std::make_shared<InfoCommand>();
     addSceneOptions(app, command->scene, "A .gltf or .glb file, or a built-in scene; none: the Vulkan devices.");
     app.add_flag("--scenes", command->scenes, "Lists the built-in scenes.");
+    app.add_flag("--advise", command->advises,
+                 "Measures for a while, and says which way of estimating pays in SCENE with these settings: one "
+                 "reservoir, one with variate color, or one a channel.");
     app.add_option("--json", command->json, "Writes the same facts for programs.")->option_text("FILE.json");
     app.add_flag("--quiet", command->quiet, "No progress on the terminal.");
     command->device.addTo(app);

@@ -45,6 +45,24 @@ TEST_F(Info, ListsTheDevicesWithTheirLimits)
     }
 }
 
+TEST_F(Info, AdvisesFromMeasurements)
+{
+    const std::string json = directory / "advice.json";
+    const Outcome told = runWell({"info", "cornell", "--advise", "--size", "16x9", "--json", json, "--quiet"});
+    const nlohmann::json advice = readJson(json)["advice"];
+    ASSERT_EQ(advice["methods"].size(), 3u);
+    for (const nlohmann::json& row : advice["methods"]) {
+        EXPECT_GT(row["milliseconds"], 0);
+        EXPECT_GT(row["relmse"], 0);
+        EXPECT_LE(row["gain_low"], row["gain"]);
+        EXPECT_NE(told.out.find("    " + row["method"].get<std::string>()), std::string::npos);
+    }
+    EXPECT_GT(advice["trees_per_pixel"], 1);
+    EXPECT_NEAR(advice["crossover"].get<double>(), 4, 2); // V/P of cornell, at any size
+    EXPECT_NE(told.out.find("Use " + advice["best"].get<std::string>()), std::string::npos);
+    expectRefusal({"info", "--advise"}, 2, "name one");
+}
+
 TEST_F(Info, ShowsHowDevicesAreTunedAndTakesOverrides)
 {
     const std::string json = directory / "devices.json";
