@@ -65,12 +65,9 @@ void main()
     Reservoir r[MAX_RESERVOIRS];
     PairwiseMerge merge[MAX_RESERVOIRS];
     uint lender[MAX_RESERVOIRS]; // whose sample is chosen; paths are loaded once that is settled
-    float density[MAX_RESERVOIRS]; // of that sample, here
     for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {
         r[c] = loadReservoirsHead(pixel, c);
         merge[c] = beginMerge(r[c], confidence, neighborConfidence);
-        lender[c] = pixel;
-        density[c] = 1.0;
     }
     uvec4 before = COLOR_READING != COLOR_CHOSEN ? FETCH(MergedColor, pixel) : uvec4(0u); // color of the merge before; albedo
     vec3 weighted = vec3(0.0); // sum of w chi over all that is merged; of COLOR_VARIATE: A' - A_i
@@ -96,9 +93,9 @@ void main()
                                                    vec2(confidence, otherConfidence), k);
             if (!chosen) continue;
             merge[c].neighbors.chosen = other.chosen;
+            merge[c].neighbors.chosen.density = densityFrom(neighbor, slot, c);
             merge[c].neighbors.f = fHere;
             lender[c] = neighbor;
-            density[c] = densityFrom(neighbor, slot, c);
         }
     }
     float u = decisionNumber(pixel, STREAM_SPATIAL + frame.neighborCount);
@@ -110,9 +107,7 @@ void main()
             r[c].f = merge[c].neighbors.f;
         } else {
             lender[c] = pixel;
-            density[c] = loadReservoirsDensity(pixel, c);
         }
-        r[c].chosen.density = density[c];
         r[c].chosen.reconnection = loadReservoirsPath(lender[c], c);
         color += resolved(c, r[c]);
     }

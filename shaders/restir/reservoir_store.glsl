@@ -34,9 +34,9 @@ vec3 inChannel(uint c, float x)
     return vec3(own.x ? x : 0.0, own.y ? x : 0.0, own.z ? x : 0.0);
 }
 
-// LOAD_RESERVOIRS defines, over a set's two tables: load<SET>Head, one reservoir without path and density; load<SET>Path and
-// load<SET>Density; load<SET>, all of a pixel's. STORE_RESERVOIRS: store<SET>. Arrays have MAX_RESERVOIRS elements, of which
-// RESERVOIR_COUNT are used (lib/lanes.glsl).
+// LOAD_RESERVOIRS defines, over a set's two tables: load<SET>Head and load<SET>Path, one reservoir without and its path;
+// load<SET>, all of a pixel's. STORE_RESERVOIRS: store<SET>. Arrays have MAX_RESERVOIRS elements, of which RESERVOIR_COUNT are
+// used (lib/lanes.glsl).
 #define LOAD_RESERVOIRS(SET, HEADS, PATHS)                                                                             \
     Reservoir load##SET##Head(uint pixel, uint c)                                                                      \
     {                                                                                                                  \
@@ -46,6 +46,7 @@ vec3 inChannel(uint c, float x)
         r.chosen.pathId = a.z & 0xffffu;                                                                               \
         r.chosen.reconnectionIndex = a.z >> 16u;                                                                       \
         r.weightSum = uintBitsToFloat(a.w);                                                                            \
+        if (KEEPS_DENSITIES) r.chosen.density = uintBitsToFloat(FETCH(HEADS, densityRow(pixel))[c]);                   \
         if (ONE_CHANNEL) {                                                                                             \
             r.f = inChannel(c, uintBitsToFloat(FETCH(HEADS, headRow(pixel, RESERVOIR_COUNT))[c]));                     \
             r.carry = uintBitsToFloat(FETCH(HEADS, headRow(pixel, RESERVOIR_COUNT + 1u))[c]);                          \
@@ -66,17 +67,11 @@ vec3 inChannel(uint c, float x)
         else suffix = uintBitsToFloat(FETCH(PATHS, pathRow(pixel, c, 2u)).xyz);                                        \
         return Reconnection(vertex.x, uintBitsToFloat(vertex.yz), uintBitsToFloat(vertex.w), onward.xyz, suffix);      \
     }                                                                                                                  \
-    float load##SET##Density(uint pixel, uint c)                                                                       \
-    {                                                                                                                  \
-        if (!KEEPS_DENSITIES) return 1.0;                                                                              \
-        return uintBitsToFloat(FETCH(HEADS, densityRow(pixel))[c]);                                                    \
-    }                                                                                                                  \
     void load##SET(uint pixel, out Reservoir r[MAX_RESERVOIRS])                                                        \
     {                                                                                                                  \
         for (uint c = 0u; c < RESERVOIR_COUNT; ++c) {                                                                  \
             r[c] = load##SET##Head(pixel, c);                                                                          \
             r[c].chosen.reconnection = load##SET##Path(pixel, c);                                                      \
-            r[c].chosen.density = load##SET##Density(pixel, c);                                                        \
         }                                                                                                              \
     }
 

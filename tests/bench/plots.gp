@@ -52,6 +52,38 @@ if (only eq '' || only eq 'autocovariance') {
     unset multiplot
 }
 
+# What mutations of history's samples change: the film at rest, and how long frames are remembered under motion.
+if (only eq '' || only eq 'mutations') {
+    mutations = data.'/mutations.csv'
+    eval begin('mutations', 960, 340)
+    set linetype 4 lc rgb '#009e73' pt 4 ps 0.6 lw 1.5
+    set multiplot layout 1,3
+    set logscale xy
+    set format y '10^{%L}'
+    set lmargin 9
+    unset key
+    is(method, regime) = strcol(1) eq regime && strcol(2) eq method
+    set title 'Mean of all frames, at rest, K = 0'
+    set xlabel 'M, frames'
+    set ylabel 'variance, radiance²'
+    rest = 'cornell; rest; replay; K = 0'
+    plot for [k=2:3] mutations using (is(k == 2 ? 'restir-pt (chosen)' : 'rgb-restir', rest) ? $3 : NaN):13 every ::1 with lines lt k dt 2, \
+        for [k=2:3] mutations using (is(k == 2 ? 'restir-pt (chosen)' : 'rgb-restir', rest) ? $3 : NaN):12 every ::1 with points lt k, \
+        mutations using (is('restir-pt (chosen; mutated)', rest) ? $3 : NaN):12 every ::1 with linespoints lt 4
+    set title 'Frames under motion, K = 3'
+    set xlabel 'lag, frames'
+    set ylabel 'autocovariance, radiance²'
+    moving = 'cornell; 0.3 degrees a frame; hybrid; K = 3'
+    array NAMES[4] = ['', 'restir-pt (chosen)', 'rgb-restir', 'restir-pt (chosen; mutated)']
+    row(name) = sprintf("< grep '^%s,%s,' '%s' | cut -d, -f5-11 | tr , '\\n'", moving, name, mutations)
+    plot for [k=2:4] row(NAMES[k]) using (2 ** $0):1 with linespoints lt k, row('rgb-restir (mutated)') using (2 ** $0):1 with linespoints lt 3 pt 9 dt 3
+    eval KEY
+    plot NaN with linespoints lt 2 title 'ReSTIR PT', NaN with linespoints lt 4 title 'ReSTIR PT, mutated', \
+        NaN with linespoints lt 3 title 'RGB ReSTIR', NaN with linespoints lt 3 pt 9 dt 3 title 'RGB ReSTIR, mutated', \
+        NaN with lines lt -1 dt 2 title 'closed form'
+    unset multiplot
+}
+
 # How many times less error, with intervals: a row for each comparison.
 if (only eq '' || only eq 'ratios') {
     ratios = data.'/ratios.csv'

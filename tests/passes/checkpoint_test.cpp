@@ -98,11 +98,13 @@ TEST(Checkpoint, NamesWhatIsDifferent)
 class CheckpointOfRenderer : public RendererFixture
 {
   protected:
-    static Settings settings(Method method, passes::Color color = passes::Color::Weighted)
+    static Settings settings(Method method, passes::Color color = passes::Color::Weighted,
+                             passes::Mutate mutate = passes::Mutate::Off)
     {
         Settings s;
         s.method = method;
         s.color = color;
+        s.mutate = mutate;
         s.width = 24;
         s.height = 20;
         s.maxBounces = 3;
@@ -134,7 +136,9 @@ TEST_F(CheckpointOfRenderer, GoesOnToTheSameBitsWhetherTheCameraRestsOrMoves)
     using Case = std::pair<Settings, double>;
     for (const auto& [asked, orbit] :
          {Case{settings(Method::Pt), 2.0}, Case{settings(Method::RestirPt), 0.0},
-          Case{settings(Method::RestirPt, passes::Color::Variate), 2.0}, Case{settings(Method::RgbRestir), 2.0}}) {
+          Case{settings(Method::RestirPt, passes::Color::Variate), 2.0}, Case{settings(Method::RgbRestir), 2.0},
+          Case{settings(Method::RestirPt, passes::Color::Chosen, passes::Mutate::Free), 0.0},
+          Case{settings(Method::RgbRestir, passes::Color::Weighted, passes::Mutate::Free), 2.0}}) {
         SCOPED_TRACE(fmt::format("method {}, color {}, {} degrees", int(asked.method), int(asked.color), orbit));
         const passes::CameraAt cameraAt = orbit > 0 ? passes::cameraOrbit(scene.cameras.at(0), orbit) : nullptr;
         Renderer whole(device(), scene, asked);

@@ -57,6 +57,14 @@ TEST(FrameBuffers, TakeOfAPixelWhatTheDocumentsSay)
     EXPECT_EQ(bytes(Method::RgbRestir, Shift::Hybrid), 488u);
     EXPECT_EQ(bytes(Method::RgbRestir, Shift::Replay), 296u);
     EXPECT_EQ(bytes(Method::GroupedRestir, Shift::Hybrid), 520u);
+    // Mutations: a row of densities in each set, and one a neighbor; none where all are 1.
+    for (const Method method : {Method::RestirPt, Method::RgbRestir, Method::GroupedRestir})
+        for (const Shift shift : {Shift::Replay, Shift::Hybrid}) {
+            Settings settings = settingsOf(method, shift, 640, 360);
+            settings.mutate = passes::Mutate::Free;
+            EXPECT_EQ(passes::bytesPerPixel(settings) - bytes(method, shift),
+                      shift == Shift::Replay ? 0u : 32u + 3 * 16);
+        }
 }
 
 TEST(FrameBuffers, KeepWhatTheNextFrameNeeds)

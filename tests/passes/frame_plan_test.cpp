@@ -63,6 +63,20 @@ TEST_F(FramePlan, IsThePapersFrame)
               (Names{"canonical", "=temporal", "spatial_gather", "accumulate"}));
 }
 
+// At rest what canonical walks is proposed to history's samples; else a walk in the frame before is, in its world.
+TEST_F(FramePlan, MutatesHistoryWhereThereIsOne)
+{
+    const passes::SceneOnDevice scene = movingCornell();
+    const passes::Settings settings{.method = Method::RestirPt, .spatial = 0, .mutate = passes::Mutate::Free};
+    EXPECT_EQ(stages(scene, settings, {}), (Names{"primary", "canonical", "spatial_gather", "accumulate"}));
+    EXPECT_EQ(stages(scene, settings, {.hitsKnown = true, .history = true, .sameView = true}),
+              (Names{"=canonical", "=temporal", "spatial_gather", "accumulate"}));
+    EXPECT_EQ(stages(scene, settings, {.history = true}),
+              (Names{"primary", "canonical", "mutate", "temporal", "spatial_gather", "accumulate"}));
+    EXPECT_EQ(stages(scene, settings, {.history = true, .moved = true}),
+              (Names{"primary", "canonical", "~mutate", "~temporal", "spatial_gather", "accumulate"}));
+}
+
 // Temporal reuse turns to the previous world where the scene has moved, and only there: nothing else ever does.
 TEST_F(FramePlan, ReusesBetweenWorldsExactlyWhereTheSceneHasMoved)
 {
@@ -93,7 +107,8 @@ TEST_F(FramePlan, KeepsTheOrderOfTheList)
     const passes::SceneOnDevice scene = cornell();
     for (const Method method : {Method::Pt, Method::RestirPt, Method::RgbRestir, Method::GroupedRestir}) {
         auto last = all.begin();
-        for (const passes::PlannedStage& stage : passes::framePlan(scene, {.method = method}, 1)) {
+        for (const passes::PlannedStage& stage :
+             passes::framePlan(scene, {.method = method, .mutate = passes::Mutate::Free}, 1)) {
             last = std::find(last, all.end(), stage.shader);
             EXPECT_NE(last, all.end()) << stage.shader;
         }

@@ -64,7 +64,7 @@ const std::vector<PlantedError>& plantedErrors()
         {"MutationInAnotherDomain", "mutate.comp", "makeDomain(pixel, true)", "makeDomain(pixel, false)"},
         {"MutationForgetsTheDensityInTime", "temporal.comp", "old[c].chosen = renewed(c);",
          "{ old[c].chosen = renewed(c); old[c].chosen.density = 1.0; }"},
-        {"MutationForgetsTheDensityInSpace", "spatial_gather.comp", "density[c] = densityFrom(neighbor, slot, c);", ""},
+        {"MutationForgetsTheDensityInSpace", "spatial_gather.comp", "densityFrom(neighbor, slot, c);", "1.0;"},
         {"MutationByTheDensityElsewhere", "path/shift.glsl",
          "moving[c].density = densityOf(x.k + 1u, moving[c].pathId, pdf * measure, departure);", ""},
         // What the color estimate beside reservoirs alone shows.

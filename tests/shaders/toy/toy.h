@@ -1,6 +1,7 @@
 // A world whose integrals are known in closed form, in place of scenes: what C++ and GLSL share of it.
 //
-// A path of the toy is a number x in [0, 1) and one of two ids, TOY_FIRST_PATH and the next. Its contribution in a domain is
+// A path of the toy is a number x in [0, 1) and one of two ids, TOY_FIRST_PATH and the next. Its contribution in a
+// domain is
 //     h(x) = albedo * cell[id][floor(4 x)] * (1 + 2 x),  0 where |x - occluder| < OCCLUDER_SIZE.
 // Domain differs from domain in all of these, in particular in what each channel sees at all. Candidates draw x with
 // density p(x) = 1 + slope (2 x - 1) by inversion of a uniform number.
@@ -17,7 +18,7 @@ SHARED_BEGIN
 SHARED_CONST uint TOY_GROUP = 8u; // runs; they are independent of other groups', not of each other
 SHARED_CONST uint TOY_PATHS = 2u;
 SHARED_CONST uint TOY_FIRST_PATH = 3u; // its id: of another length than the second one
-SHARED_CONST uint TOY_CELLS = 4u; // of a path id
+SHARED_CONST uint TOY_CELLS = 4u;      // of a path id
 SHARED_CONST float TOY_OCCLUDER_SIZE = 0.08f;
 
 struct ToyDomain {
