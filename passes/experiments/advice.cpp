@@ -89,6 +89,9 @@ Advice advise(gpu::Device& device, const scene::Scene& scene, const Settings& se
         const std::vector<double> seconds = figures.secondsAfter(lane, FRAMES);
         std::vector<double> costs;
         for (size_t r = 0; r < errors.size(); ++r) costs.push_back(errors[r] * seconds[r]);
+        if (!allAboveZero(costs))
+            throw Error("There is no advice: at {}x{} pixels {} is as precise as what it would be measured against.",
+                        base.width, base.height, CANDIDATES[i].name);
         if (i == 0) first = costs;
         advice.rows.push_back({.method = CANDIDATES[i].name,
                                .milliseconds = 1e3 * finiteMedian(seconds) / double(FRAMES),

@@ -39,7 +39,7 @@ struct Advice {
 };
 
 // Measures with these settings (whose method, color and size it replaces), under a camera that turns. The scene rests.
-// `progress` gets the part done. Throws Error when `stop` says so before the end.
+// `progress` gets the part done. Throws Error when `stop` says so before the end, and where errors are too small.
 Advice advise(gpu::Device& device, const scene::Scene& scene, const Settings& settings,
               const std::function<void(double)>& progress, const std::function<bool()>& stop);
 
