@@ -33,7 +33,7 @@ constexpr Candidate CANDIDATES[] = {{"restir-pt:color=weighted", Method::RestirP
                                     {"restir-pt:color=variate", Method::RestirPt, Color::Variate},
                                     {"rgb-restir", Method::RgbRestir, Color::Weighted}};
 
-FrameLaw lawOf(const Renderer& sharing, Settings settings, const image::Image& emission)
+FrameLaw lawOf(const Renderer& sharing, const Settings& settings, const image::Image& emission)
 {
     Renderer renderer(sharing, lawSettings(settings), LAW_RUNS);
     LawMeter meter(renderer, emission);
@@ -56,8 +56,8 @@ Advice advise(gpu::Device& device, const scene::Scene& scene, const Settings& se
 {
     Settings base = settings;
     const double scale = std::min(1.0, std::sqrt(PIXELS / (double(base.width) * base.height)));
-    base.width = std::max(1u, uint32_t(base.width * scale + 0.5));
-    base.height = std::max(1u, uint32_t(base.height * scale + 0.5));
+    base.width = std::max(1u, uint32_t(std::lround(base.width * scale)));
+    base.height = std::max(1u, uint32_t(std::lround(base.height * scale)));
     base.temporal = true;
     std::vector<Settings> methods;
     for (const Candidate& candidate : CANDIDATES) {

@@ -135,10 +135,10 @@ TEST_F(Autocovariance, FollowsTheClosedForm)
             const statistics::Estimate measured = statistics::combine(std::span(&value, 1));
             const statistics::Estimate predicted = statistics::combine(std::span(&law_, 1));
             const statistics::Difference difference = statistics::compare(measured, predicted);
-            EXPECT_GT(difference.p, 1e-4) << "method " << int(method) << ", color " << int(color) << ", " << what
-                                          << ": " << measured.mean << " against " << predicted.mean;
+            EXPECT_GT(difference.p, 1e-4) << what << ": " << measured.mean << " against " << predicted.mean;
             EXPECT_LT(difference.standardError, 0.06 * predicted.mean) << what;
         };
+        SCOPED_TRACE("method " + std::to_string(int(method)) + ", color " + std::to_string(int(color)));
         const passes::FrameLaw& single = color == Color::Variate ? plain : law;
         ASSERT_EQ(points.back().lags.size(), 6u);
         for (const passes::LagPoint& lag : points.back().lags)
@@ -174,7 +174,7 @@ TEST_F(Autocovariance, MutationsThawFrozenSamples)
         s.color = color;
         s.mutate = mutate;
         Renderer own = renderer(scene, s, RUNS);
-        const passes::ChainPoint point = chainOf(own, FRAMES).back();
+        passes::ChainPoint point = chainOf(own, FRAMES).back();
         for (const auto& [stage, count] : own.stats().nonFinite) EXPECT_EQ(count, 0u) << stage;
         EXPECT_EQ(own.stats().mutations.at("accepted") > 0, mutate == passes::Mutate::Free);
         return point;

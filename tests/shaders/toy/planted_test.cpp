@@ -35,7 +35,7 @@ constexpr passes::Mutate FREE = passes::Mutate::Free;
 
 const ToyError ERRORS[] = {
     {"WeightTimes1_02", Shift::Replay, {Temporal, true, 8}},
-    {"MissingJacobian", Shift::Hybrid, {Temporal, true, 1}, 1024},
+    {"MissingJacobian", Shift::Hybrid, {Temporal, true, 1}, 2040},
     {"SwappedTemporalMis", Shift::Replay, {Temporal, true, 8}},
     {"SwappedSpatialMis", Shift::Replay, {Spatial, false, 8}},
     {"TemporalConfidenceOffByOne", Shift::Hybrid, {Temporal, true, 8}},
