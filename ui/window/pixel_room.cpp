@@ -58,7 +58,8 @@ void drawReservoirs(const WindowState& state, const Shot& shot, uint32_t x, uint
             ImGui::TextUnformatted(text.c_str());
         };
         cell(targetName(estimator.target[size_t(c)]));
-        cell(holds ? fmt::format("{}/{}/{}", seen.seedFrame & ~shared::SEED_OF_PROPOSAL, seen.seedPixel, pathId) : "none");
+        cell(holds ? fmt::format("{}/{}/{}", seen.seedFrame & ~shared::SEED_OF_PROPOSAL, seen.seedPixel, pathId)
+                   : "none");
         cell(holds ? fmt::format("{}{}", seen.lengthAndShifts & 0xffff, r > 0 ? fmt::format(", joins x{}", r) : "")
                    : "");
         cell(fmt::format("{:.4g}", seen.target));
