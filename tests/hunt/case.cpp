@@ -140,7 +140,8 @@ Session::Session(uint64_t seed, uint64_t index, Wanted wanted) : seed_(seed), in
     settings_.average = false;
     orthographic_ = draw.chance(0.12);
     insist(settings_);
-    stores_ = kind_ != Kind::Moving && draw.chance(0.25);
+    const bool stores = kind_ != Kind::Moving && draw.chance(0.25);
+    stores_ = stores && kind_ != Kind::Edges; // where surfaces lie in one plane, and the order of triangles decides
     if (!wanted_.onItself) return;
     truth_ = Truth::PathTracer;
     settings_.method = Pt;
