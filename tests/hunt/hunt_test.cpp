@@ -344,13 +344,10 @@ class Hunter : public RendererFixture
 TEST_F(Hunter, FindsNothingInAFixedHunt)
 {
     for (uint64_t index = 0; index < KINDS; ++index) {
-        const Session session(2026, index, {.kind = KIND_NAMES[index]});
-        const auto pipelines = std::make_shared<passes::PipelinePool>(device());
-        for (uint64_t place = 0; place < 2; ++place) {
-            const Case c = session.draw(place);
-            const Finding finding = examine(device(), pipelines, c, c.number, {.repeats = place == 0});
-            EXPECT_FALSE(finding.found()) << c.describe() << "\n" << finding.describe();
-        }
+        const Case c = Session(2026, index, {.kind = KIND_NAMES[index]}).draw(0);
+        const Finding finding =
+            examine(device(), std::make_shared<passes::PipelinePool>(device()), c, c.number, {.repeats = true});
+        EXPECT_FALSE(finding.found()) << c.describe() << "\n" << finding.describe();
     }
 }
 

@@ -56,11 +56,11 @@ std::vector<RestirCase> movingCases()
             {"PanesSlide", RgbRestir, Hybrid, Both, false, 8, 300},
             {"BumpsMove", RestirPt, Hybrid, Both, false, 8},
             {"OrthographicBall", RgbRestir, Hybrid, Both, true, 8},
-            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 64, 4000},
+            {"RoomRebuilds", RgbRestir, Hybrid, Both, false, 8, 1500},
             {"RoomRebuilds", RestirPt, Reconnection, Temporal, true, 8, 600},
             {"RoomRebuilds", GroupedRestir, Replay, Both, false, 8, 450},
             {"RoomRebuilds", RestirPt, Hybrid, Both, false, 8, 600, 4, Variate},
-            {"LampChanges", RestirPt, Hybrid, Both, false, 8, 4000, 5, Variate},
+            {"LampChanges", RestirPt, Hybrid, Temporal, false, 8, 1500, 5, Variate},
             {"PaintDries", RestirPt, Hybrid, Both, true, 8, 300, 4, Variate},
             {"PanesSlide", RestirPt, Replay, Temporal, false, 8, 300, 5, Variate},
         };

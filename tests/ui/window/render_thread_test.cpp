@@ -224,6 +224,7 @@ TEST(RenderThread, StudiesWaitUntilTheSceneRestsAndAreOfThatTime)
     EXPECT_FALSE(thread.findings()->reference);
     EXPECT_FALSE(thread.findings()->curves[ui::A]);
     order.playing = false;
+    order.paused = true; // the pictures: studies have the time to themselves
     uint64_t before = 0; // the reference
     const auto reference = [&](double time) {
         order.scene.time = time;

@@ -72,9 +72,9 @@ TEST_F(Timeline, PlaysStopsStepsScrubsAndReturnsToRest)
 TEST_F(Timeline, BeginsWhereTheCommandLineSaysAndEndsWhereItDoesNotLoop)
 {
     view({"--time", "3.5", "--fps", "10", "--loop", "off"}, scene());
-    ASSERT_TRUE(comes([](const Json& json) { return shows(json) && json["playing"] == true; }));
-    ASSERT_TRUE(comes([](const Json& json) { return json["playing"] == false && json["frames"] > 1; }));
-    EXPECT_EQ(report()["scene_seconds"], 4);
+    // Five frames to the end, which a report may not see.
+    ASSERT_TRUE(comes([](const Json& json) { return json["playing"] == false && json["scene_seconds"] == 4; }));
+    ASSERT_TRUE(comes([](const Json& json) { return json["frames"] > 1; })); // it rests there
     EXPECT_EQ(close(), 0);
     view({"--time", "1.5", "--animation", "to and fro"}, scene());
     ASSERT_TRUE(comes(shows));
