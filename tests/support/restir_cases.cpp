@@ -40,7 +40,7 @@ std::vector<RestirCase> restirMatrix()
                                 if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                                 if (mutate != passes::Mutate::Off && reuse == Spatial) continue; // no history
                                 cases.push_back(
-                                    {"Glossy", method, shift, reuse, moves, maxConfidence, 600, frames, color, mutate});
+                                    {"Glossy", method, shift, reuse, moves, maxConfidence, 4800, frames, color, mutate});
                             }
     return asFamily(std::move(cases));
 }
