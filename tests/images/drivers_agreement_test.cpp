@@ -1,7 +1,7 @@
 // Two drivers of different makers, lavapipe and SwiftShader, make the same picture of every built-in scene with every
 // method. Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
-// few paths on which rounding decides a branch. By default two of these cases, without neighbors, which SwiftShader takes
-// half as long to compile; all, with neighbors, with TRICHROME_TEST_DRIVERS=1 (ctest -R drivers); with
+// few paths on which rounding decides a branch. By default two of these cases, without neighbors, which SwiftShader
+// takes half as long to compile; all, with neighbors, with TRICHROME_TEST_DRIVERS=1 (ctest -R drivers); with
 // TRICHROME_TEST_DRIVERS=ICD.json on that driver in SwiftShader's place.
 
 #include <fmt/format.h>

@@ -39,8 +39,8 @@ std::vector<RestirCase> restirMatrix()
                             for (const passes::Mutate mutate : {passes::Mutate::Off, passes::Mutate::Free}) {
                                 if (color != Chosen && oneHot(passes::estimatorOf(method))) continue;
                                 if (mutate != passes::Mutate::Off && reuse == Spatial) continue; // no history
-                                cases.push_back(
-                                    {"Glossy", method, shift, reuse, moves, maxConfidence, 4800, frames, color, mutate});
+                                cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 4800, frames,
+                                                 color, mutate});
                             }
     return asFamily(std::move(cases));
 }
