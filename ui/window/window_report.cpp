@@ -72,8 +72,8 @@ Json reportOf(const Findings& findings)
 
 Json reportOf(const WindowState& state, const ErrorMeter& meter)
 {
-    Json json = Json::object();
-    if (state.pictures.sides[A]) json = reportOf(*state.pictures.sides[A]); // A at the top
+    const ShotPointer& a = state.pictures.sides[A];
+    Json json = reportOf(a ? *a : Shot()); // at the top; before the first picture one without frames
     if (state.pictures.sides[B]) json["b"] = reportOf(*state.pictures.sides[B]);
     json["asked"] = {
         {"settings", passes::toJson(state.order.settings)}, // what hands have set, whether it runs yet or not

@@ -127,17 +127,14 @@ testing::AssertionResult WindowTest::until(const Condition& condition, const std
 
 WindowTest::Condition WindowTest::runs(const std::string& setting, const Json& value)
 {
-    return [=](const Json& json) {
-        return json.contains("settings") && json["settings"][setting] == value && json["frames"] > 0;
-    };
+    return [=](const Json& json) { return json["settings"].value(setting, Json()) == value && json["frames"] > 0; };
 }
 
 WindowTest::Condition WindowTest::asks(const std::string& what, const Json& value)
 {
     return [=](const Json& json) {
-        const Json asked = json.value("asked", Json::object());
-        return asked.contains(what) ? asked[what] == value
-                                    : asked.contains("settings") && asked["settings"][what] == value;
+        const Json& asked = json["asked"];
+        return asked.value(what, asked["settings"].value(what, Json())) == value;
     };
 }
 
