@@ -1,8 +1,7 @@
 // Two drivers of different makers, lavapipe and SwiftShader, make the same picture of every built-in scene with every
 // method. Runs have equal seeds on both, and differences of their tiles are tested: what is left is rounding, and the
-// few paths on which rounding decides a branch. By default two of these cases, without neighbors, which SwiftShader
-// takes half as long to compile; all, with neighbors, with TRICHROME_TEST_DRIVERS=1 (ctest -R drivers); with
-// TRICHROME_TEST_DRIVERS=ICD.json on that driver in SwiftShader's place.
+// few paths on which rounding decides a branch. By default two of these cases, all with TRICHROME_TEST_DRIVERS=1
+// (ctest -R drivers); with TRICHROME_TEST_DRIVERS=ICD.json all of them on that driver in SwiftShader's place.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -75,7 +74,7 @@ std::vector<image::Image> picturesOn(Driver& driver, const scene::Scene& scene, 
     settings.width = 24;
     settings.height = 16;
     settings.maxBounces = 3;
-    settings.spatial = std::getenv("TRICHROME_TEST_DRIVERS") ? 1 : 0;
+    settings.spatial = 1;
     passes::Renderer renderer(driver.device, scene, settings, {.pipelines = driver.pipelines});
     const passes::CameraAt cameraAt = passes::cameraOrbit(scene.cameras.at(0), 2);
     std::vector<image::Image> pictures;
