@@ -16,7 +16,7 @@ namespace
 class CameraPath : public WindowTest
 {
   protected:
-    static size_t keyframes(const Json& json) { return json.contains("asked") ? json["asked"]["keyframes"].size() : 0; }
+    static size_t keyframes(const Json& json) { return json["asked"]["keyframes"].size(); }
 
     // Paused while it plays, somewhere in between: where it is, or a few frames on, which come one by one.
     void stopBetween(int low, int high) const
