@@ -66,8 +66,8 @@ std::vector<RestirCase> movingCases()
         };
         return cases;
     }
-    cases = {{"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 12000,
-              5}}; // what StaleSuffix is planted in (restir_planted_test.cpp)
+    cases = {{"CeilingLit", RgbRestir, Hybrid, Both, false, 64, 12000, 5},         // what StaleSuffix is planted in
+             {"LampChanges", RestirPt, Hybrid, Both, false, 8, 4000, 5, Variate}}; // too long for the choice above
     for (const passes::Method method : {RestirPt, RgbRestir, GroupedRestir})
         for (const passes::Shift shift : {Replay, Reconnection, Hybrid})
             for (const Reuse reuse : {Temporal, Both})

@@ -42,6 +42,11 @@ std::vector<RestirCase> restirMatrix()
                                 cases.push_back({"Glossy", method, shift, reuse, moves, maxConfidence, 4800, frames,
                                                  color, mutate});
                             }
+    // Other scenes, which take too long to be among the choice below.
+    cases.push_back({"AlphaBlend", RgbRestir, Hybrid, Both, true, 8});
+    cases.push_back({"FrostedGlass", RgbRestir, Hybrid, Both, true, 8, 800});
+    cases.push_back({"SunnySky", RestirPt, Replay, Both, true, 8});
+    cases.push_back({"Room", RestirPt, Reconnection, Both, true, 64, 450, 5, Variate});
     return asFamily(std::move(cases));
 }
 
